@@ -241,12 +241,12 @@ impl Motion {
             // A program is not sampled between two rows: steps are at most as long as their interval.
             options.max_step = options.max_step.min(interval);
         }
-        let held_from = plan
-            .recorded_until()
-            .filter(|until| until + interval < self.t_end);
-        let smooth = plan.recorded_smooth().and_then(smooth_inputs);
-        let begins = plan.recorded_begins().map(str::to_owned);
-        let differs = plan.recorded_differs().to_vec();
+        let recorded = plan.recorded.as_ref();
+        let until = recorded.map(|table| table.until);
+        let held_from = until.filter(|until| until + interval < self.t_end);
+        let smooth = recorded.and_then(|table| smooth_inputs(&table.smooth));
+        let begins = recorded.and_then(|table| table.begins.clone());
+        let differs = recorded.map_or_else(Vec::new, |table| table.differs.clone());
         let wiring = plan.wiring(&setup, self.t_end)?;
         Ok(Ready {
             wiring,

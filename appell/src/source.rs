@@ -57,7 +57,7 @@ impl Robot {
             let lines: Vec<String> = one.lines.iter().map(ToString::to_string).collect();
             let s = if lines.len() == 1 { "" } else { "s" };
             Some(format!(
-                "left out, and the motion is another one: {} in line{s} {} ({effect})",
+                "left out, which changes the motion: {} in line{s} {} ({effect})",
                 one.what,
                 lines.join(", ")
             ))

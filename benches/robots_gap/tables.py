@@ -101,8 +101,8 @@ def block(about, found, peers):
     begin, end = marks(about["folder"])
     text = [begin, "",
             f"One run of `{about['command']}` on {about['date']}, commit {about['commit']}. MuJoCo {about['mujoco']}.",
-            "`mujoco.sysid` fits all armatures, dampings, dry frictions, masses, gains and one delay; it names nothing: it counts",
-            "as having found the cause where that moved most.", ""]
+            "`mujoco.sysid` fits all armatures, dampings, dry frictions, masses, gains and one delay; it names no cause: it",
+            "counts as right where the true cause moved most.", ""]
     return "\n".join([*text, *summary(found, peers), "", *rows(found, peers), "", end])
 
 

@@ -46,8 +46,8 @@ differentiation, for up to seven joints. Those of appell hold M, the Jacobian wi
 
 DERIVATION = """### Derivation
 
-Time of the processor from the text of the spec to the schedule of one function; of all functions that are emitted of a
-model, derivatives by parameters among them where there are at most 64, up to 14 joints and for robot files. rustc takes {compiled:.1f} s for the whole model of arm7.
+Processor time from the text of the spec to the schedule of one function, and of all emitted functions (up to 14 joints and
+for robot files), with derivatives by parameters where there are at most 64. rustc takes {compiled:.1f} s for the whole model of arm7.
 
 """
 

@@ -75,7 +75,6 @@ fn every_code_of_this_crate_has_a_bad_spec() {
 fn every_code_is_in_the_table_once_and_in_order() {
     for (i, info) in CODES.iter().enumerate() {
         assert_eq!(info.code as usize, i);
-        assert_eq!(appell_spec::Code::from_text(info.text), Some(info.code));
         assert_eq!(CODES.iter().filter(|c| c.text == info.text).count(), 1);
         assert!(info.explanation.ends_with('.'), "{}", info.text);
     }

@@ -2,7 +2,7 @@
 
 use appell_gap::diagnose::{
     Advice, Changes, Found, GapVerdict, HowFar, Hypothesis, Law, Left, Refitted, Report, Share,
-    Value, Where, Yardstick,
+    Value, Yardstick,
 };
 use appell_report::gap::{Headline, sentence};
 
@@ -47,21 +47,10 @@ fn report(verdict: GapVerdict, which: Vec<Hypothesis>, budget: Vec<Share>) -> Re
     let stays = budget.iter().find(|part| part.is_rest());
     let closed = 1.0 - stays.map_or(0.0, |part| part.closed);
     Report {
-        locked: Vec::new(),
-        robot: None,
         mechanism: "rig".to_owned(),
         verdict,
-        is_by_simulation: false,
-        is_by_forces: false,
         rows: [10, 10],
-        place: Where {
-            domain: "none",
-            equations: Vec::new(),
-            windows: Vec::new(),
-            region: Vec::new(),
-        },
         which,
-        tied: Vec::new(),
         how_far: Some(HowFar {
             horizon_s: 1.0,
             nominal: 100.0,
@@ -78,21 +67,8 @@ fn report(verdict: GapVerdict, which: Vec<Hypothesis>, budget: Vec<Share>) -> Re
             is_worse: false,
             runs: vec!["run3.csv".to_owned()],
         }),
-        detectable: Vec::new(),
-        failed: Vec::new(),
-        imperfections: Vec::new(),
-        disturbances: Vec::new(),
-        left: None,
         independent: 1.0,
-        law: None,
-        change: None,
-        hints: Vec::new(),
-        tolerances: None,
-        interpolated: Vec::new(),
-        found: Vec::new(),
-        horizons: Vec::new(),
-        pictures: None,
-        experiment: None,
+        ..Report::default()
     }
 }
 

@@ -238,7 +238,7 @@ impl<'a> Places<'a> {
             Code::NotAllowedHere,
             place.clone(),
             format!(
-                "`{}` holds nowhere near where the joints stand: it stays off by {} in SI units",
+                "`{}` cannot hold near the joint positions: its residual is {} in SI units",
                 appell_spec::shown(name),
                 crate::letters::plain((off * 1e6).round() / 1e6)
             ),

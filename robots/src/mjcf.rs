@@ -159,7 +159,7 @@ pub(crate) fn read(
                 Code::LimitExceeded,
                 tag(root),
                 format!(
-                    "`{what}` is read of robots with at most {} freedoms",
+                    "`{what}` is limited to {} degrees of freedom",
                     mass::MOST_FREEDOMS
                 ),
                 help,

@@ -150,7 +150,7 @@ fn motions_begin_where_loops_close() {
     let wrong = told(&rod(0.8)).unwrap_err();
     for words in [
         "robot.xml:4:",
-        "`connect_1` holds nowhere near",
+        "`connect_1` cannot hold near",
         "off by 0.3",
         "without couplings",
     ] {
@@ -162,6 +162,6 @@ fn motions_begin_where_loops_close() {
     assert!(
         told(&still)
             .unwrap_err()
-            .contains("`weld_1` holds nowhere near")
+            .contains("`weld_1` cannot hold near")
     );
 }

@@ -71,12 +71,6 @@ impl Linearisation {
             states,
         })
     }
-
-    /// Entry of A for two states, by their index in the model; `None` for a dependent one.
-    pub fn a_of(&self, row: usize, column: usize) -> Option<f64> {
-        let place = |state| self.states.iter().position(|&s| s == state);
-        Some(self.a[place(row)? * self.states.len() + place(column)?])
-    }
 }
 
 /// `-(∂f/∂q_dependent)⁻¹ ∂f/∂q` in the columns of the independent states.

@@ -184,10 +184,10 @@ def table_across(rows, now, best):
     engines = ", ".join(sorted({str(row["engine"]) for row in rows}))
     whole = [row for row in rows if not row["left_out"]]
     yield (
-        "Mean difference between what the first answer claims and how often it is right, in ten parts of the "
-        f"probability (engine {engines}, one-step evidence): with the constants of the tool, with those found on all "
-        "cases, and with those found without the kind of law that is judged. By chance alone: its median were "
-        "every claim exact. Development scores."
+        "Mean difference between the stated probability of the first answer and its frequency, in ten equal "
+        f"bins (engine {engines}, one-step evidence): with the constants of the tool, with those found on all "
+        "cases, and with those found without the kind of law that is judged. By chance: its median if "
+        "every claim were exact. Development scores."
     )
     yield "\n| cases | number | tool | found on all | across kinds | by chance |\n|---|---|---|---|---|---|"
     for cases in sorted({row["case"].split("/")[0] for row in whole}):

@@ -345,11 +345,11 @@ def section(labels, reports):
     methods = sorted(f.name for f in reports.iterdir() if f.is_dir() and f.name != "left_out")
     count = lambda kind: sum(l["kind"] == kind for l in labels.values())
     parts = [
-        f"Development scores: the labels of these cases are in the repository, and the engine was changed beside them. "
+        f"Development scores: the labels of these cases are in the repository, and the engine was developed on them. "
         f"Engine {engines(labels, reports / 'appell')}.",
         f"{len(labels)} cases: {count('null')} without a gap, {count('single')} with one effect, {count('compound')} with two, "
-        f"{count('mismatch')} with another law than the library's, {count('off_library')} with what the library does not have. "
-        f"Intervals of 95 % in brackets. One effect has d′ {LARGE} or more where nothing else is said.",
+        f"{count('mismatch')} with a law other than the library's, {count('off_library')} with a cause outside the library. "
+        f"Intervals of 95 % in brackets. One effect has d′ {LARGE} or more unless stated otherwise.",
     ]
     if methods:
         parts.append(

@@ -13,7 +13,7 @@ use appell_analysis::control::placement;
 use appell_analysis::control::reduction::{ReductionError, Subsystem, reduce};
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::sampler::{SampledFeedback, Sampler};
-use appell_analysis::control::schedule::{GainSchedule, OperatingLaw, ScheduledFeedback};
+use appell_analysis::control::schedule::{GainSchedule, OperatingLaw};
 use appell_models::Shipped;
 use appell_runtime::inputs::InputSource;
 use appell_runtime::integrate::Options;
@@ -403,15 +403,13 @@ fn a_sampled_law_with_a_delay_keeps_the_unicycle_where_the_continuous_gains_fail
 
 #[test]
 fn gains_over_the_speed_hold_the_unicycle_between_the_speeds_of_the_design() {
-    let design = |speed: f64| -> Result<OperatingLaw, std::convert::Infallible> {
-        Ok(OperatingLaw {
-            gain: placed(speed, LANE),
-            states: DVector::zeros(6),
-            inputs: DVector::zeros(1),
-        })
+    let design = |speed: f64| OperatingLaw {
+        gain: placed(speed, LANE),
+        states: DVector::zeros(6),
+        inputs: DVector::zeros(1),
     };
-    let laws = GainSchedule::design((10..=50).map(|k| f64::from(k) / 10.0), design).unwrap();
-    let schedule = GainSchedule::new(laws).unwrap();
+    let speeds = (10..=50).map(|k| f64::from(k) / 10.0);
+    let schedule = GainSchedule::new(speeds.map(|speed| (speed, design(speed))).collect()).unwrap();
     assert_eq!(schedule.at(2.0).gain, placed(2.0, LANE));
     assert_eq!(schedule.at(0.1).gain, placed(1.0, LANE));
     assert_eq!(schedule.at(9.0).gain, placed(5.0, LANE));
@@ -420,13 +418,10 @@ fn gains_over_the_speed_hold_the_unicycle_between_the_speeds_of_the_design() {
         let omega_2 = indices(point.model, &["omega_2"])[0];
         let lateral = indices(point.model, &["y_G"])[0];
         point.x[lateral] = 0.05;
-        let law = ScheduledFeedback {
-            schedule: &schedule,
-            inputs: vec![0],
-            states: indices(point.model, LANE),
-            condition: |_: f64, x: &[f64]| 0.3 * x[omega_2],
-            desired: |_: f64, y: &mut [f64]| y.fill(0.0),
-            switching_times: Vec::new(),
+        let states = indices(point.model, LANE);
+        let law = |_: f64, x: &[f64], u: &mut [f64]| {
+            let y = DVector::from_fn(states.len(), |i, _| x[states[i]]);
+            u[0] = schedule.at(0.3 * x[omega_2]).asked(&y)[0];
         };
         let motion = simulate(&point, &law, 10.0);
         assert!(

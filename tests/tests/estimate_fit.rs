@@ -65,13 +65,10 @@ fn parameters_and_levels_of_noise_are_found_together() {
     assert!(fit.steps <= 40, "{} steps", fit.steps);
     assert!(fit.log_likelihood > estimation.log_likelihood(&truth).unwrap());
     for (index, one) in free.iter().enumerate() {
-        let [low, high] = fit.interval95(index).unwrap();
         let wanted = truth[layout.place(one.unknown).unwrap()];
-        // Three standard deviations instead of two: seven values have to fit at once.
-        let (low, high) = (
-            low * (low / high).powf(0.25),
-            high * (high / low).powf(0.25),
-        );
+        // Three standard deviations: seven values have to fit at once.
+        let reach = 3.0 * fit.deviation(index).unwrap();
+        let [low, high] = [-reach, reach].map(|off| one.to_value(fit.coordinates[index] + off));
         assert!(
             (low..=high).contains(&wanted),
             "{:?}: {wanted} in {low}..{high}",

@@ -3,8 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use appell_estimate::{
-    Channel, Coordinate, Disturbance, Estimation, Free, Layout, Measured, Recording, Setup,
-    Shooting, Unknown,
+    Channel, Disturbance, Estimation, Layout, Measured, Recording, Setup, Unknown,
 };
 use appell_models::Shipped;
 use appell_runtime::model::Model;
@@ -290,58 +289,6 @@ fn it_is_exact_for_lagging_channels_that_measure_outputs() {
             set(&mut values, &estimation.layout(), Unknown::Lag(lag), tau);
         }
         assert_gradient(&estimation, &values, TOLERANCE);
-    }
-}
-
-#[test]
-fn shooting_has_exact_slopes_for_lagging_channels() {
-    let model = shipped::complete_model("cart_pole");
-    let setup = Setup {
-        lagging: vec![0],
-        disturbances: Vec::new(),
-        ..filtered_outputs(model)
-    };
-    let recordings = prompt(&setup, &Drive::sines(60, 0.01, &[2.0]), "shot");
-    let estimation = Estimation::new(&setup, &recordings).unwrap();
-    let layout = estimation.layout();
-    let lags = [0, 1, 2].map(Unknown::Lag);
-    let parameters = (0..layout.place(Unknown::Noise(0)).unwrap()).map(Unknown::Parameter);
-    let unknowns: Vec<Unknown> = lags.into_iter().chain(parameters).collect();
-    let mut values = noisy(&estimation, 0.0, 0.01);
-    for (unknown, tau) in lags.into_iter().zip([0.02, 0.03, 0.015]) {
-        set(&mut values, &layout, unknown, tau);
-    }
-    let free: Vec<Free> = unknowns
-        .iter()
-        .map(|&unknown| Free {
-            coordinate: Coordinate::Plain,
-            ..Free::of(unknown)
-        })
-        .collect();
-    let start =
-        &estimation.nominal()[layout.place(Unknown::Initial { run: 0, state: 0 }).unwrap()..];
-    let states = model.info().state_len() + 3;
-    let at = |values: &[f64]| {
-        let guess = |_: &Recording| start[..states].to_vec();
-        let shooting = Shooting::new(&estimation, values, &free, 20, guess).unwrap();
-        shooting.slope(0.1).unwrap()
-    };
-    let (_, slope) = at(&values);
-    for (index, &unknown) in unknowns.iter().enumerate() {
-        let place = layout.place(unknown).unwrap();
-        let h = 1e-5 * values[place].abs().max(1e-2);
-        let varied = |sign: f64| {
-            let mut varied = values.clone();
-            varied[place] += sign * h;
-            at(&varied).0
-        };
-        let wanted = (varied(1.0) - varied(-1.0)) / (2.0 * h);
-        let error = (slope[index] - wanted).abs();
-        assert!(
-            error <= TOLERANCE * wanted.abs().max(1.0),
-            "{unknown:?}: {} against {wanted}",
-            slope[index]
-        );
     }
 }
 

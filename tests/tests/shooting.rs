@@ -168,32 +168,3 @@ fn without_disturbances_the_closed_motion_is_the_most_likely_one() {
         assert!((variance.sqrt() / deviation - 1.0).abs() < 0.01);
     }
 }
-
-#[test]
-fn its_slope_is_that_of_differences() {
-    let rig = Rig::tumbling(1.0);
-    let free = rig.free(&LINKS);
-    let estimation = Estimation::new(&rig.setup, &rig.recordings).unwrap();
-    let at = |factors: &[f64]| {
-        let start = rig.wrong(&free, factors);
-        let shooting =
-            Shooting::new(&estimation, &start, &free, SEGMENT, guess(&rig.setup)).unwrap();
-        shooting.slope(0.1).unwrap()
-    };
-    let (_, slope) = at(&WRONG);
-    for index in 0..free.len() {
-        let h = 1e-4_f64;
-        let shifted = |by: f64| {
-            let mut factors = WRONG;
-            factors[index] *= (by * h).exp();
-            at(&factors).0
-        };
-        let wanted =
-            (8.0 * (shifted(1.0) - shifted(-1.0)) - (shifted(2.0) - shifted(-2.0))) / (12.0 * h);
-        assert!(
-            (slope[index] - wanted).abs() < 1e-6 * wanted.abs(),
-            "{} against {wanted}",
-            slope[index]
-        );
-    }
-}

@@ -71,7 +71,7 @@ pub struct Plan {
     exprs: Vec<Lowered>,
     terms: Vec<Term>,
     laws: Vec<PlacedLaw>,
-    recorded: Option<Table>,
+    pub(crate) recorded: Option<Table>,
     driven: Vec<DrivenInputs>,
     switching_times: Vec<f64>,
     /// Inputs set by an expression or a recording.
@@ -97,28 +97,6 @@ impl Plan {
     pub fn is_empty(&self) -> bool {
         let given = self.recorded.is_some() || !self.driven.is_empty();
         self.terms.is_empty() && self.laws.is_empty() && !given
-    }
-
-    /// The last time of a recording in s.
-    pub fn recorded_until(&self) -> Option<f64> {
-        self.recorded.as_ref().map(|table| table.until)
-    }
-
-    /// Recorded inputs that change smoothly although they are held, see [`Table::smooth`].
-    pub fn recorded_smooth(&self) -> Option<&[(String, f64)]> {
-        self.recorded.as_ref().map(|table| table.smooth.as_slice())
-    }
-
-    /// What differs in a recorded run from the model, see [`Table::differs`].
-    pub fn recorded_differs(&self) -> &[String] {
-        self.recorded.as_ref().map_or(&[], |table| &table.differs)
-    }
-
-    /// Where a recorded run begins, if the motion does not, see [`Table::begins`].
-    pub fn recorded_begins(&self) -> Option<&str> {
-        self.recorded
-            .as_ref()
-            .and_then(|table| table.begins.as_deref())
     }
 
     fn take(&mut self, field: Field, input: usize, setup: &Setup<'_>) -> Result<(), Error> {

@@ -1,4 +1,4 @@
-//! Right angles within angles: they exchange sine and cosine, so a fixed turn by one costs no operations.
+//! Right angles in sums of angles: they swap sine and cosine, so a fixed turn by one costs no operations.
 
 use super::algebra::Algebra;
 use crate::symbolic::{Expr, Graph, Node, Rational};

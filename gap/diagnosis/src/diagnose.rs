@@ -253,24 +253,18 @@ fn by_filter(
         alternative: None,
         law: measured.as_ref(),
     };
-    let leader = match (&rebound, &measured) {
-        (Some((rival, runs)), _) => Leader {
-            bench: &rival.bench,
-            fitted: &rival.fitted,
-            runs,
-            noise: rival.noise(&bench, &best.noise),
-            alternative: Some(&rival.name),
-            law: None,
-        },
-        (None, Some(law)) if report.which[0].is_unknown() => Leader {
-            bench: &law.bench,
-            fitted: &law.fitted,
-            runs: &law.runs,
-            ..best
-        },
-        _ => best,
+    let far = |leader: &Leader<'_>| {
+        held_out.how_far(&bench, &comparison, leader, before.as_ref(), options)
     };
-    let how_far = held_out.how_far(&bench, &comparison, &leader, before.as_ref(), options)?;
+    let rebound = rebound.as_ref();
+    let mut leader = leader_of(&report, best.clone(), rebound);
+    let mut how_far = far(&leader)?;
+    if let Some(found) = &how_far
+        && report.recall_law(found, &place)
+    {
+        leader = leader_of(&report, best, rebound);
+        how_far = far(&leader)?;
+    }
     report.settle(how_far.as_ref(), bench.is_over_windows());
     let horizons = held_out.horizons(&bench, &comparison, &leader)?;
     let pictures = if options.pictures {
@@ -294,6 +288,32 @@ fn by_filter(
         experiment,
         ..report
     })
+}
+
+/// The leader of a report, where the `best` hypothesis of the library is known: an alternative, with its held-out runs, or
+/// the law of a cause outside the library.
+fn leader_of<'l>(
+    report: &Report,
+    best: Leader<'l>,
+    rebound: Option<&'l (&Rival<'l>, HeldOut)>,
+) -> Leader<'l> {
+    match (rebound, best.law) {
+        (Some((rival, runs)), _) => Leader {
+            bench: &rival.bench,
+            fitted: &rival.fitted,
+            runs,
+            noise: rival.noise(best.bench, &best.noise),
+            alternative: Some(&rival.name),
+            law: None,
+        },
+        (None, Some(law)) if report.which[0].is_unknown() => Leader {
+            bench: &law.bench,
+            fitted: &law.fitted,
+            runs: &law.runs,
+            ..best
+        },
+        _ => best,
+    }
 }
 
 /// The hypotheses fitted without the windows that none of them predicts, with the segments and the runs of that fit;

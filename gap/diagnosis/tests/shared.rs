@@ -3,9 +3,6 @@
 
 use std::path::PathBuf;
 
-use appell_estimate::smoothing::Samples;
-use appell_estimate::smoothing::kinematic::Kinematic;
-use appell_estimate::smoothing::spline::SmoothingSpline;
 use appell_recordings::{FindingKind, Part, read};
 use appell_test_kit::{is_full, workspace};
 
@@ -13,9 +10,6 @@ use crate::common::library;
 
 /// A statement may be wrong by a factor of two; the data tell the level to a tenth.
 const WRONG: std::ops::Range<f64> = 0.45..2.2;
-
-/// Rates smoothed in two ways agree to some percent: the recorded ones are late by most of a millisecond.
-const AGREE: f64 = 0.02;
 
 /// The folders below one of the shared folders that hold a description. An ordinary run reads none:
 /// they are no part of the repository. A full one fails without them.
@@ -77,37 +71,5 @@ fn every_real_recording_is_read_whole_and_its_noise_is_known() {
         }
         let told = set.findings.iter().find(|f| lost.contains(&f.kind));
         assert_eq!(told, None, "{rig}");
-    }
-}
-
-/// A rig whose angle and angular velocity were both recorded: the velocity, denoised by its authors, was
-/// found in another way than ours.
-#[test]
-fn rates_smoothed_from_angles_are_those_that_were_recorded() {
-    for folder in folders("realdata") {
-        if !folder.ends_with("multiarm_single") {
-            continue;
-        }
-        let set = read(&folder, library(), None).unwrap();
-        let [theta, omega] = ["theta", "omega"].map(|column| {
-            let mut channels = set.channels.iter();
-            channels
-                .position(|channel| channel.column == column)
-                .unwrap()
-        });
-        let noise = set.channels[theta].noise.unwrap().std;
-        for run in &set.runs {
-            let samples = Samples::new(&run.times, &run.values[theta]).unwrap();
-            let model = Kinematic::most_likely(3, Some(noise), samples).unwrap();
-            let spline = SmoothingSpline::cross_validated(3, samples).unwrap();
-            let theirs = &run.values[omega];
-            let size: f64 = theirs.iter().map(|rate| rate * rate).sum();
-            for ours in [model.smooth(samples).unwrap().estimate, spline.estimate] {
-                let pairs = ours.derivative(1).into_iter().zip(theirs);
-                let off: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
-                let part = (off / size).sqrt();
-                assert!(part < AGREE, "{}: {part}", run.name);
-            }
-        }
     }
 }

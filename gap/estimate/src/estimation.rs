@@ -9,7 +9,6 @@ use crate::data::layout::Layout;
 use crate::data::recording::Recording;
 use crate::data::setup::{Measured, Setup};
 use crate::data::unknown::Unknown;
-use crate::gradient::adjoint::adjoint;
 use crate::kalman::filter::{Innovation, Pass};
 use crate::motion::plant::{Plant, StateSpace};
 use crate::motion::timeline::{Action, timeline};
@@ -145,25 +144,6 @@ impl<'a> Estimation<'a> {
     pub fn gradient(&self, values: &[f64]) -> Result<(f64, Vec<f64>), EstimateError> {
         let kept = self.kept(values, &[], &[])?;
         Ok((kept.log_likelihood(), kept.slopes().gradient))
-    }
-
-    /// The gradient of the log-likelihood of some rows of a run, given all rows before them: their
-    /// score. One for each range.
-    pub fn scores(
-        &self,
-        values: &[f64],
-        run: usize,
-        rows: &[Range<usize>],
-    ) -> Result<Vec<Vec<f64>>, EstimateError> {
-        self.check(values)?;
-        self.layout.place(Unknown::Initial { run, state: 0 })?;
-        let mut pass = self.pass(run, values, true, &[])?;
-        let score = |rows| {
-            let mut gradient = vec![0.0; self.layout.len()];
-            adjoint(&mut pass, rows, &mut gradient);
-            gradient
-        };
-        Ok(rows.iter().map(score).collect())
     }
 
     /// The innovations of all measured scalars, run by run.

@@ -27,7 +27,7 @@ mod track;
 use nalgebra::{DMatrix, DVector};
 
 pub use consistency::{Consistency, Inconsistency, Sought};
-pub use relation::{Motion, Relations, Rows};
+pub use relation::{Moment, Motion, Relations, Rows};
 pub use search::Found;
 pub use track::{Record, Stretch, Track};
 
@@ -119,17 +119,6 @@ pub struct InputEquations {
     pub free: DVector<f64>,
 }
 
-/// Unknowns of the equations.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Unknowns {
-    /// The inputs, by least squares where there are more equations than unknowns.
-    pub inputs: Vec<f64>,
-    /// All pseudo-accelerations, given or computed.
-    pub accelerations: Vec<f64>,
-    /// Residuals of the equations that were used.
-    pub residual: Vec<f64>,
-}
-
 impl InputEquations {
     /// Of a model at a state. The inputs of `at` are ignored, the signals after them are used.
     pub fn at(model: &dyn Model, at: At<'_>) -> Result<Self, InverseError> {
@@ -181,17 +170,13 @@ impl InputEquations {
         Ok(&self.mass * DVector::from_column_slice(accelerations) + &self.free)
     }
 
-    /// Residuals of the relations for a motion; zero for the true model.
-    pub fn inconsistency(&self, accelerations: &[f64]) -> Result<DVector<f64>, InverseError> {
-        Ok(self.relations() * self.demand(accelerations)?)
-    }
-
-    /// The inputs, and the accelerations that were not measured, from some of the equations.
+    /// The inputs from some of the equations, by least squares where these exceed the unknowns: the inputs
+    /// and the accelerations that were not measured.
     pub fn solve(
         &self,
         accelerations: &[Option<f64>],
         rows: &[usize],
-    ) -> Result<Unknowns, InverseError> {
+    ) -> Result<Vec<f64>, InverseError> {
         self.count(accelerations.len())?;
         let known: Vec<f64> = accelerations.iter().map(|a| a.unwrap_or(0.0)).collect();
         let open: Vec<usize> = (0..known.len())
@@ -217,15 +202,7 @@ impl InputEquations {
         let first = singular.solve(&target, rank);
         // One step of iterative refinement.
         let solution = &first + singular.solve(&(&target - &matrix * &first), rank);
-        let mut all = known;
-        for (place, &index) in open.iter().enumerate() {
-            all[index] = solution[m + place];
-        }
-        Ok(Unknowns {
-            inputs: solution.rows(0, m).iter().copied().collect(),
-            accelerations: all,
-            residual: (&target - &matrix * &solution).iter().copied().collect(),
-        })
+        Ok(solution.rows(0, m).iter().copied().collect())
     }
 
     fn count(&self, found: usize) -> Result<(), InverseError> {

@@ -21,7 +21,7 @@
 //! | `estimation.rs` | setup, recordings, filter and gradient behind one type |
 //! | `fitting/` | maximum-likelihood fits |
 //! | `shooting/` | fits without disturbances, from starts far from the truth |
-//! | `statistics/` | intervals, identifiability, robust covariance; consistency of innovations |
+//! | `statistics/` | χ², robust covariance, consistency of innovations |
 //! | `inverse/` | the inputs of a measured motion, and its input-free relations |
 //! | `smoothing/` | derivatives of noisy samples with their covariance |
 //! | `parallel.rs` | independent pieces of work on all processors |
@@ -47,9 +47,9 @@ pub use data::setup::{Channel, Disturbance, Measured, Setup};
 pub use data::unknown::Unknown;
 pub use error::EstimateError;
 pub use estimation::Estimation;
+pub use fitting::base_parameters::BaseParameters;
 pub use fitting::fit::{Effort, Fit};
 pub use fitting::free::{Coordinate, Free};
-pub use fitting::regression::{BaseParameters, Moment, Regression};
 pub use gradient::sensitivity::Sensitivity;
 pub use gradient::tangent::{Along, Direction, Shapes, Tangent};
 pub use kalman::filter::Innovation;
@@ -59,5 +59,4 @@ pub use parallel::in_parallel;
 pub use shooting::{Shooting, Shot};
 pub use statistics::chi_squared::{HALF_WIDTH_95, chi_squared_probability, chi_squared_quantile};
 pub use statistics::consistency::Consistency;
-pub use statistics::identifiability::{Combination, Identifiability};
-pub use statistics::robust::Blocks;
+pub use statistics::robust::robust_covariance;

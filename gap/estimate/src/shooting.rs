@@ -157,16 +157,6 @@ impl<'o, 'e> Shooting<'o, 'e> {
         Ok(shots)
     }
 
-    /// The objective for a gap and its gradient with respect to the coordinates of the free values,
-    /// at the start.
-    pub fn slope(&self, gap: f64) -> Result<(f64, DVector<f64>), EstimateError> {
-        let pieces = self.pieces(&self.start)?;
-        let (objective, mut slope) = Condensed::slope(&pieces, &self.weights(&self.start, gap));
-        let (prior, by_prior) = self.selection.prior(&self.start.coordinates);
-        slope -= by_prior;
-        Ok((objective - prior, slope))
-    }
-
     /// The search for one gap.
     fn search(&self, mut trial: Trial, gap: f64) -> Result<(Trial, Shot), EstimateError> {
         let mut pieces = self.pieces(&trial)?;

@@ -4,12 +4,8 @@
 //! |---|---|
 //! | `chi_squared.rs` | its probabilities and quantiles |
 //! | `consistency.rs` | tests of innovations: whiteness and variance |
-//! | `identifiability.rs` | combinations of values that the data determine |
-//! | `profile.rs` | profile likelihood intervals |
 //! | `robust.rs` | robust (sandwich) covariance |
 
 pub(crate) mod chi_squared;
 pub(crate) mod consistency;
-pub(crate) mod identifiability;
-pub(crate) mod profile;
 pub(crate) mod robust;

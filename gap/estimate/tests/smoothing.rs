@@ -1,22 +1,15 @@
-//! Derivatives of noisy samples, held against exact polynomials, published weights, and formulations
-//! that share nothing with them.
+//! Derivatives of noisy samples, held against exact polynomials and published weights.
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use std::f64::consts::{PI, TAU};
 
 use appell_estimate::smoothing::angle::unwrap;
-use appell_estimate::smoothing::butterworth::ZeroPhase;
-use appell_estimate::smoothing::kinematic::Kinematic;
 use appell_estimate::smoothing::noise::{at_standstill, from_differences};
 use appell_estimate::smoothing::savitzky_golay::{SavitzkyGolay, weights};
-use appell_estimate::smoothing::spline::SmoothingSpline;
 use appell_estimate::smoothing::{Samples, SamplesError, window};
-use nalgebra::{DMatrix, DVector};
 
 /// Rounding of a fit of a few dozen samples.
 const ROUNDING: f64 = 1e-12;
-/// The batch inverts matrices with a condition of ten thousand, and its variances are small differences.
-const BATCH: f64 = 1e-6;
 
 /// Numbers that are the same in every run.
 struct Random(u64);
@@ -172,255 +165,6 @@ fn the_chosen_window_is_nearly_the_best_one() {
     }
 }
 
-fn power(x: f64, n: usize) -> f64 {
-    (0..n).fold(1.0, |y, _| y * x)
-}
-
-/// Covariance of the derivatives p and r at s and t of m-fold integrated white noise of intensity one
-/// that starts from rest at 0: ∫₀^min (s − u)^(m−1−p)/(m−1−p)! (t − u)^(m−1−r)/(m−1−r)! du.
-fn integrated_noise(m: usize, s: f64, p: usize, t: f64, r: usize) -> f64 {
-    if s > t {
-        return integrated_noise(m, t, r, s, p);
-    }
-    let (a, b) = (m - 1 - p, m - 1 - r);
-    let factorial = |n: usize| (1..=n).map(|k| k as f64).product::<f64>();
-    // (t − u)^b = (v + d)^b with v = s − u.
-    let d = t - s;
-    let terms = (0..=b).map(|k| {
-        let binomial = factorial(b) / (factorial(k) * factorial(b - k));
-        binomial * power(d, b - k) * power(s, a + k + 1) / (a + k + 1) as f64
-    });
-    terms.sum::<f64>() / (factorial(a) * factorial(b))
-}
-
-/// The same motion as one Gaussian vector: polynomials with free coefficients plus integrated noise.
-struct Batch {
-    weights: DMatrix<f64>,
-    trend: DMatrix<f64>,
-    coefficients: DVector<f64>,
-    normal: DMatrix<f64>,
-    values: DVector<f64>,
-}
-
-impl Batch {
-    fn new(m: usize, std: f64, intensity: f64, times: &[f64], values: &[f64]) -> Self {
-        let n = times.len();
-        let v = DMatrix::from_fn(n, n, |i, j| {
-            let noise = if i == j { std * std } else { 0.0 };
-            noise + intensity * integrated_noise(m, times[i], 0, times[j], 0)
-        });
-        let trend = DMatrix::from_fn(n, m, |i, k| power(times[i], k));
-        let weights = v.try_inverse().unwrap();
-        let normal = (trend.transpose() * &weights * &trend)
-            .try_inverse()
-            .unwrap();
-        let values = DVector::from_column_slice(values);
-        let coefficients = &normal * trend.transpose() * &weights * &values;
-        Self {
-            weights,
-            trend,
-            coefficients,
-            normal,
-            values,
-        }
-    }
-
-    fn log_likelihood(&self) -> f64 {
-        let residual = &self.values - &self.trend * &self.coefficients;
-        let square = (residual.transpose() * &self.weights * &residual)[0];
-        0.5 * (self.weights.determinant().ln() + self.normal.determinant().ln() - square)
-    }
-
-    /// Mean and variance of a derivative at a time.
-    fn at(&self, m: usize, intensity: f64, times: &[f64], t: f64, order: usize) -> [f64; 2] {
-        let c = DVector::from_iterator(
-            times.len(),
-            times
-                .iter()
-                .map(|&s| intensity * integrated_noise(m, t, order, s, 0)),
-        );
-        let falling = |k: usize| (0..order).map(|i| k as f64 - i as f64).product::<f64>();
-        let h = DVector::from_fn(m, |k, _| {
-            if k < order {
-                0.0
-            } else {
-                falling(k) * power(t, k - order)
-            }
-        });
-        let residual = &self.values - &self.trend * &self.coefficients;
-        let mean = h.dot(&self.coefficients) + (c.transpose() * &self.weights * residual)[0];
-        let lever = &h - self.trend.transpose() * &self.weights * &c;
-        let own = intensity * integrated_noise(m, t, order, t, order);
-        let variance = own - (c.transpose() * &self.weights * &c)[0]
-            + (lever.transpose() * &self.normal * &lever)[0];
-        [mean, variance]
-    }
-}
-
-#[test]
-fn the_kinematic_smoother_is_the_batch_estimate() {
-    let mut random = Random(5);
-    let times = random.times(40, 0.02);
-    let (_, mut values) = sine(&mut random, &times, 0.05);
-    // The batch knows only what is there; the smoother also tells about the missing ones.
-    let gaps = [3, 17, 18, 39];
-    let mut there: (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    for (row, value) in values.iter_mut().enumerate() {
-        if gaps.contains(&row) {
-            *value = f64::NAN;
-        } else {
-            there.0.push(times[row]);
-            there.1.push(*value);
-        }
-    }
-    let samples = Samples::new(&times, &values).unwrap();
-    let std = 0.05;
-    for m in 1..=3 {
-        let mut likelihoods = Vec::new();
-        for intensity in [3.0, 400.0] {
-            let model = Kinematic::new(m, std, intensity).unwrap();
-            let smoothed = model.smooth(samples).unwrap();
-            let batch = Batch::new(m, std, intensity, &there.0, &there.1);
-            for (row, &t) in times.iter().enumerate() {
-                for order in 0..m {
-                    let [mean, variance] = batch.at(m, intensity, &there.0, t, order);
-                    let what = format!("m = {m}, q = {intensity}, order {order} at row {row}");
-                    assert_near(smoothed.estimate.at(row)[order], mean, BATCH, &what);
-                    let found = smoothed.estimate.std(row, order);
-                    assert_near(found / variance.sqrt(), 1.0, BATCH, &what);
-                }
-            }
-            likelihoods.push(smoothed.log_likelihood - batch.log_likelihood());
-        }
-        let what = format!("likelihood of m = {m}");
-        assert_near(likelihoods[1], likelihoods[0], BATCH, &what);
-    }
-}
-
-#[test]
-fn stated_intervals_hold_as_often_as_they_should() {
-    let mut random = Random(17);
-    let (step, std, intensity) = (0.02, 0.01, 25.0);
-    let (mut inside, mut all) = ([0, 0], 0);
-    for _ in 0..60 {
-        // White acceleration, exactly sampled.
-        let times: Vec<f64> = (0..120).map(|i| f64::from(i) * step).collect();
-        let (mut y, mut v) = (1.0, -2.0);
-        let mut truth = Vec::new();
-        for _ in &times {
-            truth.push([y, v]);
-            let (a, b) = (random.normal(), random.normal());
-            let spread = (intensity * step).sqrt();
-            y += step * v + spread * step * (0.5 * a + b / 12f64.sqrt());
-            v += spread * a;
-        }
-        let values: Vec<f64> = truth.iter().map(|x| x[0] + std * random.normal()).collect();
-        let samples = Samples::new(&times, &values).unwrap();
-        let model = Kinematic::new(2, std, intensity).unwrap();
-        let estimate = model.smooth(samples).unwrap().estimate;
-        for (row, truth) in truth.iter().enumerate() {
-            all += 1;
-            for order in 0..2 {
-                let off = (estimate.at(row)[order] - truth[order]).abs();
-                inside[order] += usize::from(off < 1.959_964 * estimate.std(row, order));
-            }
-        }
-    }
-    for count in inside {
-        let share = count as f64 / f64::from(all);
-        assert!((0.94..0.96).contains(&share), "{share} instead of 0.95");
-    }
-}
-
-#[test]
-fn the_most_likely_motion_has_the_noise_and_the_intensity_that_made_it() {
-    let mut random = Random(23);
-    let (step, std, intensity) = (0.01, 0.02, 400.0_f64);
-    let times: Vec<f64> = (0..4000).map(|i| f64::from(i) * step).collect();
-    let (mut y, mut v) = (0.0, 0.0);
-    let values: Vec<f64> = times
-        .iter()
-        .map(|_| {
-            let (a, b) = (random.normal(), random.normal());
-            let spread = (intensity * step).sqrt();
-            y += step * v + spread * step * (0.5 * a + b / 12f64.sqrt());
-            v += spread * a;
-            y + std * random.normal()
-        })
-        .collect();
-    let samples = Samples::new(&times, &values).unwrap();
-    for known in [Some(std), None] {
-        let found = Kinematic::most_likely(2, known, samples).unwrap();
-        assert_near(found.std() / std, 1.0, 0.05, "noise");
-        assert_near(found.intensity() / intensity, 1.0, 0.2, "intensity");
-    }
-}
-
-#[test]
-fn cross_validation_finds_the_noise_and_smooths_nearly_as_well_as_can_be() {
-    let mut random = Random(29);
-    let times = random.times(500, 0.02);
-    let std = 0.05;
-    let (truth, values) = sine(&mut random, &times, std);
-    let samples = Samples::new(&times, &values).unwrap();
-    let spline = SmoothingSpline::cross_validated(3, samples).unwrap();
-    assert_near(spline.std / std, 1.0, 0.1, "noise");
-    let error = |derivatives: &[f64]| {
-        let pairs = derivatives.iter().zip(&truth);
-        pairs
-            .map(|(found, y)| (found - y[1]).powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
-    let best = (0..40)
-        .map(|i| 0.01 * 1.2f64.powi(i))
-        .map(|tau| Kinematic::with_smoothing_time(3, std, tau, samples).unwrap())
-        .map(|model| error(&model.smooth(samples).unwrap().estimate.derivative(1)))
-        .fold(f64::INFINITY, f64::min);
-    let found = error(&spline.estimate.derivative(1));
-    assert!(found < 1.5 * best, "{found} against {best}");
-}
-
-#[test]
-fn the_zero_phase_filter_keeps_the_phase_and_halves_the_power_where_it_says() {
-    let (rate, frequency) = (200.0, 6.0);
-    for order in 1..=5 {
-        let filter = ZeroPhase::new(order, frequency, 1.0 / rate).unwrap();
-        for f in [2.0, 6.0, 11.0] {
-            let wave = |i: usize| (TAU * f * i as f64 / rate).cos();
-            let values: Vec<f64> = (0..2000).map(wave).collect();
-            let filtered = filter.apply(&values);
-            // Both parts of the response, over whole periods in the middle.
-            let part = |quarter: f64| {
-                let sum: f64 = (400..1600)
-                    .map(|i| filtered[i] * (TAU * f * i as f64 / rate + quarter).cos())
-                    .sum();
-                sum / 600.0
-            };
-            let warped = |f: f64| (PI * f / rate).tan();
-            let ratio = (warped(f) / warped(frequency)).powi(2 * i32::try_from(order).unwrap());
-            let expected = 1.0 / (1.0 + (2f64.sqrt() - 1.0) * ratio);
-            assert_near(part(0.0), expected, 1e-5, &format!("order {order}, {f} Hz"));
-            assert_near(part(PI / 2.0), 0.0, 1e-5, "phase");
-        }
-    }
-}
-
-#[test]
-fn the_zero_phase_filter_leaves_constants_and_treats_both_ends_alike() {
-    let filter = ZeroPhase::new(4, 5.0, 0.01).unwrap();
-    for value in filter.apply(&[2.5; 50]) {
-        assert_near(value, 2.5, ROUNDING, "a constant");
-    }
-    let mut random = Random(31);
-    let values: Vec<f64> = (0..300).map(|_| random.normal()).collect();
-    let reversed: Vec<f64> = values.iter().rev().copied().collect();
-    let (there, back) = (filter.apply(&values), filter.apply(&reversed));
-    for (a, b) in there.iter().zip(back.iter().rev()) {
-        assert_near(*a, *b, 1e-6, "forwards and backwards");
-    }
-}
-
 #[test]
 fn the_noise_level_is_found_beside_a_motion() {
     let mut random = Random(37);
@@ -492,20 +236,7 @@ fn what_cannot_be_smoothed_is_told() {
         found: 2,
         needed: 3,
     };
-    let model = Kinematic::new(3, 1.0, 1.0).unwrap();
-    assert_eq!(model.smooth(few).unwrap_err(), too_few);
     let filter = SavitzkyGolay::new(2, 3).unwrap();
     assert_eq!(filter.estimate(few, 1, 1.0).unwrap_err(), too_few);
-    assert_eq!(
-        ZeroPhase::filtered(2, 0.1, few).unwrap_err(),
-        SamplesError::Missing { row: 1 }
-    );
-    let uneven = of(&[0.0, 1.0, 3.0], &[0.0, 1.0, 2.0]).unwrap();
-    assert!(matches!(
-        ZeroPhase::filtered(2, 0.1, uneven).unwrap_err(),
-        SamplesError::NotUniform { .. }
-    ));
-    assert!(Kinematic::new(2, f64::NAN, 1.0).is_err());
     assert!(SavitzkyGolay::new(9, 30).is_err());
-    assert!(ZeroPhase::new(2, 60.0, 0.01).is_err());
 }

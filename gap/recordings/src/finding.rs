@@ -60,63 +60,42 @@ pub enum FindingKind {
 impl FindingKind {
     /// Its identifier in JSON.
     pub const fn word(self) -> &'static str {
-        match self {
-            Self::RepeatedTime => "repeated-time",
-            Self::BackwardTime => "backward-time",
-            Self::MissingTime => "missing-time",
-            Self::FewRows => "few-rows",
-            Self::CutOff => "cut-off",
-            Self::SlowClock => "slow-clock",
-            Self::Unit => "unit",
-            Self::Sign => "sign",
-            Self::Gap => "gap",
-            Self::Cut => "cut",
-            Self::Dropouts => "dropouts",
-            Self::HeldInput => "held-input",
-            Self::Asynchronous => "asynchronous",
-            Self::SmoothInput => "smooth-input",
-            Self::Unwrapped => "unwrapped",
-            Self::Jump => "jump",
-            Self::UnknownColumn => "unknown-column",
-            Self::Constant => "constant",
-            Self::Quantised => "quantised",
-            Self::NoiseDisagrees => "noise-disagrees",
-            Self::NoiseBound => "noise-bound",
-            Self::Split => "split",
-            Self::NoTestRun => "no-test-run",
-            Self::NoInput => "no-input",
-            Self::NoTolerance => "no-tolerance",
-        }
+        self.described().0
     }
 
     /// Severity: whether it affects conclusions.
     pub const fn severity(self) -> Severity {
+        self.described().1
+    }
+
+    const fn described(self) -> (&'static str, Severity) {
+        use Severity::{Note, Warning};
         match self {
-            Self::BackwardTime
-            | Self::MissingTime
-            | Self::FewRows
-            | Self::SlowClock
-            | Self::Unit
-            | Self::Sign
-            | Self::Constant
-            | Self::HeldInput
-            | Self::Jump
-            | Self::NoiseDisagrees
-            | Self::NoiseBound
-            | Self::NoInput
-            | Self::NoTolerance
-            | Self::NoTestRun => Severity::Warning,
-            Self::RepeatedTime
-            | Self::CutOff
-            | Self::Gap
-            | Self::Cut
-            | Self::Dropouts
-            | Self::Asynchronous
-            | Self::SmoothInput
-            | Self::Unwrapped
-            | Self::UnknownColumn
-            | Self::Quantised
-            | Self::Split => Severity::Note,
+            Self::RepeatedTime => ("repeated-time", Note),
+            Self::BackwardTime => ("backward-time", Warning),
+            Self::MissingTime => ("missing-time", Warning),
+            Self::FewRows => ("few-rows", Warning),
+            Self::CutOff => ("cut-off", Note),
+            Self::SlowClock => ("slow-clock", Warning),
+            Self::Unit => ("unit", Warning),
+            Self::Sign => ("sign", Warning),
+            Self::Gap => ("gap", Note),
+            Self::Cut => ("cut", Note),
+            Self::Dropouts => ("dropouts", Note),
+            Self::HeldInput => ("held-input", Warning),
+            Self::Asynchronous => ("asynchronous", Note),
+            Self::SmoothInput => ("smooth-input", Note),
+            Self::Unwrapped => ("unwrapped", Note),
+            Self::Jump => ("jump", Warning),
+            Self::UnknownColumn => ("unknown-column", Note),
+            Self::Constant => ("constant", Warning),
+            Self::Quantised => ("quantised", Note),
+            Self::NoiseDisagrees => ("noise-disagrees", Warning),
+            Self::NoiseBound => ("noise-bound", Warning),
+            Self::Split => ("split", Note),
+            Self::NoTestRun => ("no-test-run", Warning),
+            Self::NoInput => ("no-input", Warning),
+            Self::NoTolerance => ("no-tolerance", Warning),
         }
     }
 }

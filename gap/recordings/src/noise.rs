@@ -116,7 +116,7 @@ fn judged(channel: &Channel, level: Option<Level>, quantum: Option<f64>) -> (Opt
             let told = level.bound.then(|| {
                 let found = in_unit(channel, level.std);
                 let message = format!(
-                    "the motion is too fast for the sampling to tell the noise from it; it is at most {found}"
+                    "the motion is too fast for the sampling to separate the noise; it is at most {found}"
                 );
                 (FindingKind::NoiseBound, message)
             });
@@ -129,7 +129,7 @@ fn judged(channel: &Channel, level: Option<Level>, quantum: Option<f64>) -> (Opt
             let open = level.bound && level.std > stated;
             let told = (!open && !allowed.contains(&level.std)).then(|| {
                 let message = format!(
-                    "the stated noise is {}, the data tell {}; {} is used",
+                    "the stated noise is {}, the data show {}; {} is used",
                     in_unit(channel, stated),
                     in_unit(channel, level.std),
                     in_unit(channel, within)

@@ -47,8 +47,7 @@ pub(crate) fn read(
             && let Some(wrapped) = jumps::wrapped(values, channel.turn.unwrap_or(TAU))
         {
             let (steps, place) = (counted(wrapped.count, "time"), place(wrapped.row));
-            let message =
-                format!("the angle starts anew {steps}, first in {place}; it is counted on");
+            let message = format!("the angle wraps {steps}, first in {place}; it is unwrapped");
             tell(FindingKind::Unwrapped, message);
         }
         let is_position = matches!(channel.role, Role::Measures(Measured::Coordinate(_)));

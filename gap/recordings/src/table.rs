@@ -246,7 +246,7 @@ pub(crate) fn checked(
     if times.len() < MIN_ROWS {
         let rows = counted(times.len(), "row");
         let message =
-            format!("the file has {rows}; a run needs {MIN_ROWS} to tell a rate and a noise level");
+            format!("the file has {rows}; a run needs {MIN_ROWS} for a rate and a noise level");
         if times.len() < 2 {
             return Err(DataError::whole(file, message));
         }

@@ -55,11 +55,6 @@ impl Code {
     pub fn text(self) -> &'static str {
         self.info().text
     }
-
-    /// The code with this name.
-    pub fn from_text(text: &str) -> Option<Self> {
-        CODES.iter().find(|c| c.text == text).map(|c| c.code)
-    }
 }
 
 impl std::fmt::Display for Code {

@@ -318,8 +318,7 @@ impl<'x> Reader<'x, '_> {
                     attribute.range(),
                     format!("`{kind}` has no attribute `{}`", appell_spec::shown(key)),
                     did_you_mean(key, known(), || {
-                        "MuJoCo 4.0 has none of that name: remove it, or say it otherwise"
-                            .to_owned()
+                        "MuJoCo 4.0 does not know it: remove it, or correct its name".to_owned()
                     }),
                 );
             }

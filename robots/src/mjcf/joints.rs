@@ -147,8 +147,10 @@ impl<'x> Reader<'x, '_> {
                 self.findings.warning(
                     Code::NotAllowedHere,
                     joint.place.clone(),
-                    format!("`{what}`{which} of joint `{name}` is left out, and the motion is another one"),
-                    "it is read of hinges and slides; add a load to the spec",
+                    format!(
+                        "`{what}`{which} of joint `{name}` is left out, which changes the motion"
+                    ),
+                    "it needs a hinge or a slide; add a load to the spec",
                 );
             }
         }

@@ -1,5 +1,5 @@
-//! Volume and inertia of meshes: STL, binary or as text, and OBJ. As `MuJoCo` has it, pyramids over the faces from
-//! one point within count by their size, which is exact for convex meshes.
+//! Volume and inertia of meshes: STL, binary or as text, and OBJ. As in `MuJoCo`, pyramids from an inner point over
+//! the faces have positive volume, which is exact for convex meshes.
 
 use crate::inertia::{Inertia, of_triangles};
 use crate::rotation::{Vector, add, cross, dot, minus, scaled};

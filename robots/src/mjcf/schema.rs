@@ -298,7 +298,7 @@ pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<L
                 tag(element),
                 format!("`{within}` holds no element `{}`", appell_spec::shown(name)),
                 did_you_mean(name, known, || {
-                    "MuJoCo 4.0 has none there: remove it, or say it otherwise".to_owned()
+                    "MuJoCo 4.0 allows none there: move it, or remove it".to_owned()
                 }),
             );
             continue;
@@ -327,8 +327,7 @@ pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<L
                     attribute.range(),
                     format!("`{name}` has no attribute `{}`", appell_spec::shown(key)),
                     did_you_mean(key, all, || {
-                        "MuJoCo 4.0 has none of that name: remove it, or say it otherwise"
-                            .to_owned()
+                        "MuJoCo 4.0 does not know it: remove it, or correct its name".to_owned()
                     }),
                 );
             }

@@ -19,12 +19,6 @@ impl<const N: usize> Lanes<N> {
     pub fn standard(lanes: [f64; N]) -> Self {
         Self(lanes, PhantomData)
     }
-
-    /// The same number in every lane.
-    #[inline]
-    pub fn splat(value: f64) -> Self {
-        Self::standard([value; N])
-    }
 }
 
 impl<const N: usize> Lanes<N, Own> {

@@ -5,8 +5,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use appell_runtime::inputs::InputSource;
-
 /// A law about one steady motion: u = u₀ − K (y − y₀).
 #[derive(Debug, Clone, PartialEq)]
 pub struct OperatingLaw {
@@ -76,15 +74,6 @@ impl GainSchedule {
         Ok(Self { values, laws })
     }
 
-    /// Values from `first` to `last` with a law designed at each.
-    pub fn design<E>(
-        values: impl IntoIterator<Item = f64>,
-        mut design: impl FnMut(f64) -> Result<OperatingLaw, E>,
-    ) -> Result<Vec<(f64, OperatingLaw)>, E> {
-        let values = values.into_iter();
-        values.map(|value| Ok((value, design(value)?))).collect()
-    }
-
     /// The law at a value of the condition.
     #[must_use]
     pub fn at(&self, value: f64) -> OperatingLaw {
@@ -104,46 +93,5 @@ impl GainSchedule {
     /// The values of the condition with their laws.
     pub fn laws(&self) -> impl Iterator<Item = (f64, &OperatingLaw)> {
         self.values.iter().copied().zip(&self.laws)
-    }
-}
-
-/// A schedule as the inputs of a simulation. `condition` returns the value of the condition at a
-/// time in s and a state; `desired` is added to y₀.
-#[derive(Debug, Clone)]
-pub struct ScheduledFeedback<'s, C, D> {
-    /// The laws.
-    pub schedule: &'s GainSchedule,
-    /// The inputs, by their index in the model; the others stay zero.
-    pub inputs: Vec<usize>,
-    /// The states y, by their index in the model.
-    pub states: Vec<usize>,
-    /// The condition at (t, x).
-    pub condition: C,
-    /// `y_des(t) − y₀`.
-    pub desired: D,
-    /// Times in s at which `desired` jumps or kinks.
-    pub switching_times: Vec<f64>,
-}
-
-impl<C, D> InputSource for ScheduledFeedback<'_, C, D>
-where
-    C: Fn(f64, &[f64]) -> f64,
-    D: Fn(f64, &mut [f64]),
-{
-    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
-        let mut y = DVector::zeros(self.states.len());
-        (self.desired)(t, y.as_mut_slice());
-        for (y, &state) in y.iter_mut().zip(&self.states) {
-            *y = x[state] - *y;
-        }
-        let commands = self.schedule.at((self.condition)(t, x)).asked(&y);
-        u.fill(0.0);
-        for (&input, command) in self.inputs.iter().zip(commands.iter()) {
-            u[input] = *command;
-        }
-    }
-
-    fn switching_times(&self) -> Vec<f64> {
-        self.switching_times.clone()
     }
 }

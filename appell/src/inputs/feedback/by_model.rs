@@ -153,8 +153,7 @@ impl ModelLaw {
         }
         equations.inputs = equations.inputs.select_columns(&self.inputs);
         let rows: Vec<usize> = (0..speeds).collect();
-        let solved = equations.solve(&accelerations, &rows).ok()?;
-        Some(solved.inputs)
+        equations.solve(&accelerations, &rows).ok()
     }
 }
 

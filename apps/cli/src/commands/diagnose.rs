@@ -67,11 +67,11 @@ pub(crate) struct Diagnose {
     /// held-out runs allow]
     #[arg(long, value_name = "S")]
     horizon_s: Option<f64>,
-    /// Part of the gap, after parameters are re-fitted, below which an effect names no cause [default: 0.02]
+    /// Share of the gap of the re-fitted model below which an effect is immaterial [default: 0.02]
     #[arg(long, value_name = "PART", value_parser = part)]
     tolerance: Option<f64>,
-    /// Folder for the reports of several rigs; rigs whose report is there and whose data have not changed
-    /// are not diagnosed again [default: gap-reports]
+    /// Folder for the reports of several rigs; rigs with a report there and unchanged data are not
+    /// diagnosed again [default: gap-reports]
     #[arg(long, value_name = "DIR")]
     reports: Option<PathBuf>,
     /// Table of several rigs as CSV; `-` is standard output

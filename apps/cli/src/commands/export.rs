@@ -28,8 +28,8 @@ pub(crate) struct Export {
     /// Leave out the machine code: the importing tool compiles the C
     #[arg(long)]
     sources_only: bool,
-    /// Inputs within a communication step of co-simulation: held from its start, or on the line through their values
-    /// at its start and at the start of the step before
+    /// Inputs within a communication step of co-simulation: held from its start, or extrapolated linearly from their
+    /// values at the starts of this and the last step
     #[arg(
         long,
         value_enum,

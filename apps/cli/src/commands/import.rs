@@ -17,8 +17,8 @@ const MOST_LINES: usize = 6;
 ///
 /// Links and joints keep their names. Links that are fixed together become one body, each joint a coordinate with
 /// its range, its damping, spring, dry friction and armature, and an input that drives it: a torque or a force, or with
-/// `--actuators` the commands of the file's actuators. What has no counterpart in a spec is listed with its lines, and
-/// with how the motion differs without it.
+/// `--actuators` the commands of the file's actuators. Elements without a counterpart are listed with lines
+/// and the effect of omission on the motion.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -126,7 +126,7 @@ impl Import {
         if !robot.left_out.is_empty() {
             let file = self.robot.to_string_lossy().replace('\\', "/");
             for (acts, heading) in [
-                (true, "left out, and the motion is another one"),
+                (true, "left out, which changes the motion"),
                 (false, "left out, for want of a counterpart"),
             ] {
                 let own = robot

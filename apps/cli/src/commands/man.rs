@@ -16,7 +16,7 @@ Examples:
   appell man ~/.local/share/man/man1
   appell man man && man -l man/appell-simulate.1")]
 pub(crate) struct Man {
-    /// The folder, which is made if it is not there
+    /// Output folder, created if missing
     folder: PathBuf,
 }
 

@@ -13,9 +13,8 @@ use appell_report::recording::text;
 /// A data set is a folder with a `recording.toml`. CSV files alone need `--model`, and columns with
 /// the names and units of the spec.
 ///
-/// `--write` drafts a `recording.toml` for recordings of a spec or a robot file: it finds which column is which joint's
-/// position, rate, torque or command, units, signs, noise, and the delay of commands; it asks what the recordings do not
-/// tell.
+/// `--write` drafts a `recording.toml` for recordings of a spec or a robot file: it assigns columns to positions, rates,
+/// torques and commands of joints, finds units, signs, noise and delays of commands, and asks for missing facts.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

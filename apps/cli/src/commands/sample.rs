@@ -24,27 +24,27 @@ pub(crate) struct Sample {
 enum What {
     /// A simulated rig: its spec, which omits one effect, three recordings and their description
     Rig {
-        /// The folder, which is made if it is not there; nothing is overwritten
+        /// Output folder, created if missing; nothing is overwritten
         folder: PathBuf,
     },
     /// A two-link arm with a payload and an end stop, both missing from its spec, and three recordings
     Arm {
-        /// The folder, which is made if it is not there; nothing is overwritten
+        /// Output folder, created if missing; nothing is overwritten
         folder: PathBuf,
     },
     /// Motion capture of a simulated rider on an electric unicycle: two rides and the skeleton file
     Capture {
-        /// The folder, which is made if it is not there; nothing is overwritten
+        /// Output folder, created if missing; nothing is overwritten
         folder: PathBuf,
     },
     /// A small robot arm, as URDF and as MJCF
     Robot {
-        /// The folder, which is made if it is not there; nothing is overwritten
+        /// Output folder, created if missing; nothing is overwritten
         folder: PathBuf,
     },
     /// A study of riders who differ in mass, height and stiffness
     Study {
-        /// The folder, which is made if it is not there; nothing is overwritten
+        /// Output folder, created if missing; nothing is overwritten
         folder: PathBuf,
     },
 }

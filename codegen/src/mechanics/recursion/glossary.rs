@@ -9,13 +9,10 @@ const MEANINGS: [(&str, &str); 24] = [
     ("alpha", "angular acceleration of a link."),
     ("alpha0", "the same where ω̇ = 0."),
     ("alphag", "the same where ω̇ = 0."),
-    ("a", "acceleration of the origin of a link, less free fall."),
+    ("a", "acceleration of the origin of a link minus gravity."),
     ("a0", "acceleration of the origin of a link where ω̇ = 0."),
-    ("ag", "the same, less free fall."),
-    (
-        "g",
-        "free fall upwards, the acceleration that weighs as much.",
-    ),
+    ("ag", "the same, minus gravity."),
+    ("g", "upward acceleration equivalent to gravity."),
     (
         "mass",
         "mass of a link with all that it carries; `own`: of the link alone.",
@@ -24,24 +21,24 @@ const MEANINGS: [(&str, &str); 24] = [
     ("I", "its inertia about the origin of the link."),
     (
         "n",
-        "moment about the origin of a link that a motion, or one ω̇ alone, takes of all that it carries.",
+        "moment about the origin of a link that a motion, or one ω̇, requires with all that it carries.",
     ),
-    ("f", "the force beside this moment."),
+    ("f", "the corresponding force."),
     ("n0", "this moment where ω̇ = 0."),
     ("f0", "this force where ω̇ = 0."),
     ("ng", "this moment where ω̇ = 0, less weights."),
     ("fg", "this force where ω̇ = 0, less weights."),
     (
         "AJ",
-        "with AK and AM what accelerates a link while all that it carries moves freely: n = AJ α + AK a, f = AKᵀ α + AM a.",
+        "with AK and AM the articulated-body inertia of a link: n = AJ α + AK a, f = AKᵀ α + AM a.",
     ),
     (
         "np",
-        "moment of a link so carried where it does not accelerate; `fp` the force, `nt` and `ft` beyond its joint.",
+        "bias moment of the articulated body; `fp` its bias force, `nt` and `ft` those beyond its joint.",
     ),
     (
         "rest",
-        "what is left of Π to accelerate a speed; `drive` that per inertia.",
+        "remainder of Π that accelerates a speed; `drive` that per inertia.",
     ),
     (
         "d_alpha",
@@ -57,7 +54,7 @@ const MEANINGS: [(&str, &str); 24] = [
     ),
     (
         "b",
-        "moment along a speed that an angular velocity of a link brings about.",
+        "moment along a speed due to an angular velocity of a link.",
     ),
 ];
 

@@ -2,8 +2,7 @@
 
 use std::f64::consts::PI;
 
-use appell_estimate::Moment;
-use appell_estimate::inverse::{InverseError, Motion, Record, Relations, Track};
+use appell_estimate::inverse::{InverseError, Moment, Motion, Record, Relations, Track};
 use appell_recordings::{DataSet, Part, Role, Run};
 use appell_runtime::model::{Model, Quantity};
 use appell_runtime::positions::{Moving, Positions};

@@ -10,7 +10,7 @@ use super::evidence::Fitted;
 use super::law::FittedLaw;
 use super::prior::{names, of_count, prior};
 use super::report::{
-    Detectable, Found, GapVerdict, Hint, Hypothesis, LAW, Left, Report, UNKNOWN, Value, Where,
+    Detectable, Found, GapVerdict, Hint, Hypothesis, LAW, Left, Report, Value, Where,
 };
 use super::screen::Screen;
 use super::twins;
@@ -91,16 +91,13 @@ pub(super) fn assemble(
             .map_or_else(Vec::new, |robot| robot.locked.clone()),
         verdict,
         is_by_simulation: bench.is_over_windows(),
-        is_by_forces: false,
-        rows: [0; 2],
         place: if verdict == GapVerdict::NoGap || leads {
-            Where::nowhere()
+            Where::default()
         } else {
             place
         },
         which: keep.unwrap_or(which),
         tied,
-        how_far: None,
         detectable: detectable(bench, screen),
         failed: comparison
             .failed
@@ -110,16 +107,9 @@ pub(super) fn assemble(
         imperfections: imperfections(bench, best),
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),
-        law: None,
-        change: None,
         independent: comparison.independent,
-        hints: Vec::new(),
-        tolerances: None,
-        interpolated: Vec::new(),
         found,
-        horizons: Vec::new(),
-        pictures: None,
-        experiment: None,
+        ..Report::default()
     })
 }
 
@@ -169,14 +159,7 @@ fn which(
             changes: Some(Changes::of(bench, fitted)?),
         });
     }
-    which.push(Hypothesis {
-        effects: vec![UNKNOWN.to_owned()],
-        probability: comparison.unknown,
-        same_as: None,
-        log_bayes_factor: None,
-        parameters: Vec::new(),
-        changes: None,
-    });
+    which.push(Hypothesis::unknown(comparison.unknown));
     Ok(which)
 }
 
@@ -337,14 +320,10 @@ fn values_of(
             Unknown::Parameter(index) => info.parameters[index].scale,
             _ => 1.0,
         };
-        let stretch = match free.coordinate {
-            appell_estimate::Coordinate::Plain => 1.0,
-            appell_estimate::Coordinate::Logarithm => value,
-        };
         let told = Value {
             name: named(candidate, short),
             value: value / scale,
-            std: deviation(place) * stretch / scale,
+            std: deviation(place) * free.stretch(value) / scale,
             unit,
             without: None,
             is_determined: !free

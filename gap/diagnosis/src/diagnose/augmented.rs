@@ -215,8 +215,14 @@ fn best_size(grid: &Grid<'_, '_>) -> Result<Option<Screened>, DiagnoseError> {
         FACTORS.map(product).to_vec()
     };
     let sizes = vec![best.size; directions(bench, candidate).len()];
-    let screened = Screened::tried(candidate, best.gain, sizes, starts);
-    Ok(Some(screened.beside(levels)))
+    Ok(Some(Screened {
+        candidate,
+        gain: best.gain,
+        deviations: vec![0.0; sizes.len()],
+        sizes,
+        starts,
+        levels,
+    }))
 }
 
 /// A grid search over sizes and shapes of a candidate.

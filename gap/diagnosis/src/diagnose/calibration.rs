@@ -23,6 +23,8 @@ pub(super) const TIED: f64 = 3.0;
 pub(super) const SEARCHED: f64 = 0.3;
 /// Share of the gap of the re-fitted model below which an effect is immaterial.
 pub(super) const IMMATERIAL: f64 = 0.02;
+/// Odds of a cause outside the library for a significant gap that no effect closes.
+pub(super) const MUCH: f64 = 20.0;
 /// Limit of log Bayes factors, to avoid overflow.
 const MOST: f64 = 300.0;
 

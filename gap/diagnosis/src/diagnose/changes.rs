@@ -1,6 +1,6 @@
 //! The changes of the spec under a hypothesis, so that the spec can be improved without the recordings.
 
-use appell_estimate::{Coordinate, Measured, Unknown};
+use appell_estimate::{Measured, Unknown};
 use appell_spec::compose::Composition;
 use appell_spec::edit::{EditError, set_deviations, set_parameters};
 use appell_spec::mechanism::{Parameter, ParameterId};
@@ -290,10 +290,7 @@ fn deviation(fitted: &Fitted, index: usize) -> Option<f64> {
     } else {
         fitted.fit.deviation(place).ok()?
     };
-    Some(match fitted.fit.free[place].coordinate {
-        Coordinate::Plain => std,
-        Coordinate::Logarithm => std * fitted.fit.values[index],
-    })
+    Some(std * fitted.fit.free[place].stretch(fitted.fit.values[index]))
 }
 
 /// A value in SI, rounded in its unit to so many digits after the first.

@@ -3,7 +3,7 @@
 //! A gust lasts for many rows, and a controller answers it: with white process noise its command seems to act too
 //! weakly, too late, or on another coordinate (L. Ljung, *System Identification*, 2nd edition, 1999, section 13.4, on
 //! the bias of closed loops with a wrong noise model). The most probable hypotheses are therefore fitted once more with
-//! a force along every pseudo-velocity that walks at random.
+//! a random-walk force along every pseudo-velocity.
 
 use appell_estimate::{Disturbance, Estimation, Free, Setup, Unknown};
 

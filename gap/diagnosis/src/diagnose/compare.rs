@@ -7,17 +7,14 @@ use appell_estimate::Fit;
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::calibration::{
-    IMMATERIAL, Rest, TIED, inexact, tempered, unlisted, unlisted_alone, unlisted_beside_an_effect,
-    unlisted_beside_nothing,
+    IMMATERIAL, MUCH, Rest, TIED, inexact, tempered, unlisted, unlisted_alone,
+    unlisted_beside_an_effect, unlisted_beside_nothing,
 };
 use super::evidence::Fitted;
 use super::prior::{NO_GAP, names, prior};
 use super::search::{Look, SLACK, Search};
 use super::unknown::{Leftover, leftover};
 use super::whiteness::independent;
-
-/// Odds of a cause outside the library for a significant gap that no effect closes.
-const MUCH: f64 = 20.0;
 
 /// A larger expected gain of a step is due to diverging sensitivities.
 const MOST_PROMISED: f64 = 1e4;

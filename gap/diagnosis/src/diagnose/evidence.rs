@@ -76,12 +76,7 @@ impl Evidence {
         fit: &Fit,
         by_inputs: f64,
     ) -> (Self, Vec<(Unknown, f64)>) {
-        let is_level = |i: usize| {
-            matches!(
-                fit.free[i].unknown,
-                Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Spread { .. }
-            )
-        };
+        let is_level = |i: usize| fit.free[i].unknown.is_level();
         let open: Vec<usize> = (0..fit.free.len())
             .filter(|&i| !is_level(i) && !fit.at_limit[i])
             .collect();

@@ -5,7 +5,7 @@
 //! uncertainty: with innovations r, sensitivities S and the information I of the
 //! fit, d² = min over z of |r + S z|² + zᵀ I z. Two models with separation d differ by d²/2 in log likelihood.
 
-use appell_estimate::{Coordinate, Estimation, Recording, Unknown};
+use appell_estimate::{Estimation, Recording, Unknown};
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
@@ -277,17 +277,12 @@ fn distance(
 
 /// Information of the present recordings about the values that affect the predicted mean.
 fn known(fitted: &Fitted) -> DMatrix<f64> {
-    let moves = |i: &usize| {
-        !matches!(
-            fitted.fit.free[*i].unknown,
-            Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Spread { .. }
-        )
-    };
+    let moves = |i: &usize| !fitted.fit.free[*i].unknown.is_level();
     let own: Vec<usize> = (0..fitted.fit.free.len()).filter(moves).collect();
     // From coordinates to values.
-    let stretch = |i: usize| match fitted.fit.free[i].coordinate {
-        Coordinate::Plain => 1.0,
-        Coordinate::Logarithm => fitted.fit.free[i].to_value(fitted.fit.coordinates[i]),
+    let stretch = |i: usize| {
+        let free = &fitted.fit.free[i];
+        free.stretch(free.to_value(fitted.fit.coordinates[i]))
     };
     DMatrix::from_fn(own.len(), own.len(), |i, j| {
         let (i, j) = (own[i], own[j]);

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use appell_estimate::{Coordinate, Free, Unknown};
+use appell_estimate::{Free, Unknown};
 use appell_runtime::model::{At, Model};
 use nalgebra::DMatrix;
 
@@ -60,11 +60,7 @@ impl Hardware {
             else {
                 return None;
             };
-            let stretch = match free.coordinate {
-                Coordinate::Plain => 1.0,
-                Coordinate::Logarithm => value,
-            };
-            Some((index, deviation * stretch))
+            Some((index, deviation * free.stretch(value)))
         };
         // The uncertainty of earlier estimates is no prior for changes.
         let stated = wanted.iter().filter(|_| !effects.is_of_changes);

@@ -35,6 +35,7 @@ pub(super) struct HeldOut {
 }
 
 /// The leading hypothesis, with the held-out runs bound to its model.
+#[derive(Clone)]
 pub(super) struct Leader<'l> {
     pub(super) bench: &'l Bench<'l>,
     pub(super) fitted: &'l Fitted,

@@ -22,7 +22,7 @@ const PLACES: usize = 400;
 pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where, DiagnoseError> {
     let best = comparison.best();
     let Some(&first) = best.members.first() else {
-        return Ok(Where::nowhere());
+        return Ok(Where::default());
     };
     let domain = bench.candidate(first).family.domain();
     let setup = bench.setup(&best.members);

@@ -1,6 +1,6 @@
 //! Nuisance parameters of a fit, and their priors.
 
-use appell_estimate::{Coordinate, Direction, Fit, Free, Unknown};
+use appell_estimate::{Direction, Fit, Free};
 
 /// The free values of a hypothesis that affect the predicted mean.
 pub(super) fn moving(fit: &Fit) -> Vec<Direction> {
@@ -22,17 +22,11 @@ pub(super) fn priors(fit: &Fit) -> Vec<Option<[f64; 2]>> {
 /// sensitivities are by values, priors of coordinates.
 pub(super) fn known(free: &Free, coordinate: f64) -> Option<[f64; 2]> {
     let [expected, deviation] = free.prior?;
-    let stretch = match free.coordinate {
-        Coordinate::Plain => 1.0,
-        Coordinate::Logarithm => free.to_value(coordinate),
-    };
+    let stretch = free.stretch(free.to_value(coordinate));
     let off = coordinate - free.to_coordinate(expected);
     Some([off / deviation, (deviation * stretch).recip()])
 }
 
 pub(super) fn moves_the_mean(direction: Direction) -> bool {
-    !matches!(
-        direction,
-        Direction::Value(Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Spread { .. })
-    )
+    !matches!(direction, Direction::Value(unknown) if unknown.is_level())
 }

@@ -1,7 +1,7 @@
 //! Whether the torques of a robot were recorded as means over the interval about their rows, or at the rows.
 //!
 //! They jump with the commands, so that the wrong one of the two is an error of half a jump, which would be taken for
-//! friction or a delay of the drives. The more likely one under the model as stated is right.
+//! friction or a delay of the drives. The more likely one under the model as stated is used.
 
 use appell_estimate::Estimation;
 use appell_recordings::{DataSet, Measured, Reading, Role};

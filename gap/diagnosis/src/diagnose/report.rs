@@ -38,6 +38,18 @@ pub struct Hypothesis {
 }
 
 impl Hypothesis {
+    /// The hypothesis that no effect of the library explains the gap.
+    pub(super) fn unknown(probability: f64) -> Self {
+        Self {
+            effects: vec![UNKNOWN.to_owned()],
+            probability,
+            same_as: None,
+            log_bayes_factor: None,
+            parameters: Vec::new(),
+            changes: None,
+        }
+    }
+
     /// Whether it is the hypothesis that no effect of the library explains the gap.
     pub fn is_unknown(&self) -> bool {
         self.effects == [UNKNOWN]
@@ -128,9 +140,9 @@ pub struct Where {
     pub region: Vec<Region>,
 }
 
-impl Where {
+impl Default for Where {
     /// No gap.
-    pub(super) fn nowhere() -> Self {
+    fn default() -> Self {
         Self {
             domain: "none",
             equations: Vec::new(),
@@ -386,7 +398,7 @@ pub struct Found {
 }
 
 /// The whole report.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Name of the mechanism.
     pub mechanism: String,

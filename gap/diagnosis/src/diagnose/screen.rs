@@ -33,28 +33,6 @@ pub(super) struct Screened {
 }
 
 impl Screened {
-    /// A candidate with a gain from a grid search.
-    pub(super) fn tried(
-        candidate: usize,
-        gain: f64,
-        sizes: Vec<f64>,
-        starts: Vec<Vec<(usize, f64)>>,
-    ) -> Self {
-        Self {
-            candidate,
-            gain,
-            deviations: vec![0.0; sizes.len()],
-            sizes,
-            starts,
-            levels: 1.0,
-        }
-    }
-
-    /// The same with process noise multiplied by `levels`.
-    pub(super) fn beside(self, levels: f64) -> Self {
-        Self { levels, ..self }
-    }
-
     /// The same, without the part of its gain that feedback inputs explain.
     pub(super) fn beyond_inputs(self, by_inputs: f64) -> Self {
         let gain = (self.gain - by_inputs).max(0.0);

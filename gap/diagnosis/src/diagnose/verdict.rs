@@ -1,12 +1,13 @@
 //! The verdict: what the leading hypothesis says, after predictions of the held-out runs.
 
-use super::calibration::IMMATERIAL;
+use super::calibration::{IMMATERIAL, MUCH};
 use super::report::{HowFar, Hypothesis, Report, Share, UNKNOWN, Where};
 
 /// The result in one word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum GapVerdict {
     /// No gap beyond measurement and process noise.
+    #[default]
     NoGap,
     /// One hypothesis wins.
     Explained,
@@ -74,6 +75,27 @@ impl GapVerdict {
 }
 
 impl Report {
+    /// Whether `unknown` leads after predictions of the held-out runs although no gap was found: a law of no effect of the
+    /// library may be too small for windows and yet predict materially better. `place` is where it acts.
+    pub(super) fn recall_law(&mut self, far: &HowFar, place: &Where) -> bool {
+        let predicts = |part: &Share| part.is_law() && part.interval[0] > IMMATERIAL;
+        let is_gap = far.budget.iter().any(predicts) && far.kept_of_law() >= 1.0;
+        if self.verdict != GapVerdict::NoGap || !is_gap {
+            return false;
+        }
+        for one in &mut self.which {
+            one.probability /= 1.0 + MUCH;
+            if one.is_unknown() {
+                one.probability += MUCH / (1.0 + MUCH);
+            }
+        }
+        (self.which).sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        self.verdict = GapVerdict::of(&self.which[0], &self.tied);
+        let windows = std::mem::replace(&mut self.place, place.clone()).windows;
+        self.place.windows.extend(windows);
+        true
+    }
+
     /// The verdict after predictions of the held-out runs.
     pub(super) fn settle(&mut self, far: Option<&HowFar>, is_by_simulation: bool) {
         if let Some(far) = far
@@ -81,7 +103,7 @@ impl Report {
         {
             self.verdict = GapVerdict::of(&self.which[0], &self.tied);
             if self.verdict == GapVerdict::NoGap {
-                self.place = Where::nowhere();
+                self.place = Where::default();
             }
         }
         self.verdict = self.verdict.after(&self.which, far, is_by_simulation);
@@ -248,6 +270,29 @@ mod tests {
         // Errors above the noise, and far below what process noise would do.
         for far in [far(14.2, 12.0), far(112.0, 505.0)] {
             assert_eq!(first(0.95, &far), (vec![UNKNOWN.to_owned()], 0.95));
+        }
+    }
+
+    #[test]
+    fn a_law_that_predicts_is_a_gap_although_windows_do_not_show_it() {
+        let recalled = |budget: &[(&str, f64)]| {
+            let mut report = Report {
+                which: vec![hypothesis(None, 1.0), hypothesis(Some(UNKNOWN), 0.0)],
+                ..Report::default()
+            };
+            let is_recalled = report.recall_law(&with_budget(budget), &Where::default());
+            assert_eq!(is_recalled, report.verdict == GapVerdict::Unexplained);
+            assert_eq!(is_recalled, report.which[0].is_unknown());
+            report.which[0].probability
+        };
+        let probability = recalled(&[(REFIT, 0.62), (LAW, 0.32), (REST, 0.06)]);
+        assert!((probability - 20.0 / 21.0).abs() < 1e-12, "{probability}");
+        // The law is immaterial, or there is none.
+        for budget in [
+            &[(REFIT, 0.98), (LAW, 0.01), (REST, 0.01)][..],
+            &[(REFIT, 0.62), (REST, 0.38)],
+        ] {
+            assert!(recalled(budget) >= 1.0);
         }
     }
 

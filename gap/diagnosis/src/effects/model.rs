@@ -53,8 +53,6 @@ pub struct EffectModel {
     pub candidates: Vec<Candidate>,
     /// The mechanism with all of them.
     pub mechanism: Mechanism,
-    /// The spec with all of them.
-    pub spec: Spec,
     model: Arc<JitModel>,
     /// The model without creeping contacts, which is much shorter. Its parameters are the first ones of the
     /// whole model.
@@ -198,10 +196,6 @@ impl EffectModel {
             augmented: candidates.iter().map(|_| OnceLock::new()).collect(),
             candidates,
             mechanism,
-            spec: Spec {
-                file: spec.file.clone(),
-                text,
-            },
             model,
             rolling: None,
             hypotheses: OnceLock::new(),

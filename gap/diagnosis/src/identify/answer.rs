@@ -1,10 +1,11 @@
 //! Results of an identification: intervals, correlation, determined combinations.
 
 use appell_estimate::{
-    Blocks, Consistency, Estimation, Fit, Free, HALF_WIDTH_95, Identifiability, Sensitivity,
-    Unknown,
+    Consistency, Coordinate, Estimation, Fit, Free, HALF_WIDTH_95, Sensitivity, Unknown,
+    robust_covariance,
 };
 use appell_runtime::model::Quantity;
+use appell_spectra::singular::Singular;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -116,7 +117,7 @@ impl Answer {
         let count = problem.wanted.len();
         let sensitivity = Sensitivity::of(estimation, &fit.values, &fit.free)?;
         let covariance = fit.covariance()?;
-        let robust = Blocks::of(fit, &sensitivity, block(estimation))?.covariance();
+        let robust = robust_covariance(fit, &sensitivity, block(estimation))?;
         let mut parameters = Vec::new();
         let wanted = problem.wanted.iter().zip(&problem.quantities);
         for (place, (free, quantity)) in wanted.enumerate() {
@@ -156,7 +157,7 @@ impl Answer {
         let speeds = info.states[..info.speeds].iter().enumerate();
         Ok(Self {
             is_optimum: fit.is_optimum(),
-            combinations: combinations(&sensitivity, fit, &problem.wanted),
+            combinations: combinations(&sensitivity, &problem.wanted, fit.coordinates.as_slice()),
             noise: noise
                 .map(|(index, column)| level(Unknown::Noise(index), column.clone()))
                 .collect::<Result<_, _>>()?,
@@ -191,22 +192,30 @@ fn block(estimation: &Estimation<'_>) -> usize {
 
 /// Combinations of the parameters at fixed noise levels: the variances of innovations determine the levels
 /// independently of the parameters.
-fn combinations(sensitivity: &Sensitivity, fit: &Fit, parameters: &[Free]) -> Vec<Known> {
-    let count = parameters.len();
-    let part = Sensitivity {
-        samples: sensitivity.samples.clone(),
-        residuals: sensitivity.residuals.columns(0, count).into_owned(),
-        variances: sensitivity.variances.columns(0, count).into_owned(),
-    };
-    let values: Vec<f64> = parameters
-        .iter()
-        .zip(fit.coordinates.iter())
-        .map(|(free, &coordinate)| free.to_value(coordinate))
+///
+/// From derivatives of whitened samples: the singular values of all of them, column by column in the scales of
+/// the parameters. They have twice as many digits as eigenvalues of the information.
+fn combinations(sensitivity: &Sensitivity, parameters: &[Free], coordinates: &[f64]) -> Vec<Known> {
+    let places = parameters.iter().zip(coordinates);
+    let scales: Vec<f64> = places
+        .map(|(free, &coordinate)| match (free.prior, free.coordinate) {
+            (Some([_, deviation]), _) => deviation,
+            (None, Coordinate::Logarithm) => 1.0,
+            (None, Coordinate::Plain) => free.to_value(coordinate).abs().max(f64::MIN_POSITIVE),
+        })
         .collect();
-    let found = Identifiability::of(&part, &values, parameters);
-    let known = found.combinations.into_iter().map(|combination| Known {
-        parts: combination.parts.iter().copied().collect(),
-        deviation: combination.deviation,
+    let (residuals, variances) = (&sensitivity.residuals, &sensitivity.variances);
+    let rows = residuals.nrows();
+    let slopes = DMatrix::from_fn(2 * rows, scales.len(), |i, j| {
+        let part = if i < rows { residuals } else { variances };
+        part[(i % rows, j)] * scales[j]
+    });
+    // A decomposition of the triangular factor is cheaper than one of all samples.
+    let singular = Singular::of(&slopes.qr().r());
+    let known = singular.values.iter().enumerate();
+    let known = known.map(|(k, &value)| Known {
+        parts: singular.right.column(k).iter().copied().collect(),
+        deviation: value.recip(),
     });
     known.collect()
 }
@@ -223,4 +232,34 @@ fn whiteness(
         (column.clone(), Consistency::of(own, 0.99))
     };
     Ok(columns.iter().enumerate().map(of_channel).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_data_cannot_tell_is_told_as_a_combination() {
+        // The sum p + 2 q alone matters.
+        let sensitivity = Sensitivity {
+            samples: Vec::new(),
+            residuals: DMatrix::from_fn(3, 2, |i, j| (i + 1) as f64 * (j + 1) as f64),
+            variances: DMatrix::zeros(3, 2),
+        };
+        let free = [0, 1].map(|index| Free {
+            coordinate: Coordinate::Logarithm,
+            ..Free::of(Unknown::Parameter(index))
+        });
+        let told = combinations(&sensitivity, &free, &[0.0, 0.0]);
+        let [known, unknown] = told.as_slice() else {
+            panic!("{told:?}");
+        };
+        assert!(
+            (known.deviation * 70f64.sqrt() - 1.0).abs() < 1e-9,
+            "{known:?}"
+        );
+        assert!(unknown.deviation > 1e12, "{unknown:?}");
+        let along = (2.0 * unknown.parts[0] - unknown.parts[1]) / 5f64.sqrt();
+        assert!((along.abs() - 1.0).abs() < 1e-9, "{unknown:?}");
+    }
 }

@@ -35,3 +35,13 @@ pub enum Unknown {
         state: usize,
     },
 }
+
+impl Unknown {
+    /// Whether it affects the variances of innovations and not their mean.
+    pub fn is_level(self) -> bool {
+        matches!(
+            self,
+            Self::Disturbance(_) | Self::Noise(_) | Self::Spread { .. }
+        )
+    }
+}

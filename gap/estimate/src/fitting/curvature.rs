@@ -1,10 +1,10 @@
 //! Curvature of the log-posterior at a point.
 //!
-//! - **Expected*: Fisher information, positive semidefinite, correct if the model is.
-//! - **Observed*: from gradients at neighbouring points, for any model. If it is not positive
+//! - *Expected*: Fisher information, positive semidefinite, correct if the model is.
+//! - *Observed*: from gradients at neighbouring points, for any model. If it is not positive
 //!   definite, it is modified in the metric of the expected one (Y. Dauphin et al., *Identifying
 //!   and attacking the saddle point problem*, 2014).
-//! - **Updated*: from the steps of a search (BFGS with Powell's damping; J. Nocedal and S. J.
+//! - *Updated*: from the steps of a search (BFGS with Powell's damping; J. Nocedal and S. J.
 //!   Wright, *Numerical Optimization*, 2006, procedure 18.2).
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};

@@ -13,7 +13,6 @@ use super::free::{Free, Selection};
 use super::posterior::{Point, Posterior, SUFFICIENT_DECREASE};
 use crate::EstimateError;
 use crate::estimation::Estimation;
-use crate::statistics::chi_squared::HALF_WIDTH_95;
 
 /// Damping after the first failed step, relative to the curvature.
 const DAMPING: f64 = 0.1;
@@ -170,13 +169,6 @@ impl Fit {
             Some([_, prior]) => deviation.min(prior),
             None => deviation,
         })
-    }
-
-    /// 95 % interval of a value in SI if the model is correct.
-    pub fn interval95(&self, index: usize) -> Result<[f64; 2], EstimateError> {
-        let deviation = self.deviation(index)?;
-        let (free, centre) = (self.free[index], self.coordinates[index]);
-        Ok([-1.0, 1.0].map(|sign| free.to_value(centre + sign * HALF_WIDTH_95 * deviation)))
     }
 }
 

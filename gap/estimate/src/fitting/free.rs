@@ -33,10 +33,7 @@ pub struct Free {
 impl Free {
     /// A value without further limits and without a prior; positive values in logarithms.
     pub fn of(unknown: Unknown) -> Self {
-        let positive = matches!(
-            unknown,
-            Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Lag(_) | Unknown::Spread { .. }
-        );
+        let positive = unknown.is_level() || matches!(unknown, Unknown::Lag(_));
         let not_negative = matches!(unknown, Unknown::SensorDelay(_) | Unknown::InputDelay(_));
         let lowest = if positive || not_negative {
             0.0
@@ -86,7 +83,7 @@ impl Free {
     }
 
     /// Derivative of the value with respect to the coordinate.
-    pub(crate) fn stretch(&self, value: f64) -> f64 {
+    pub fn stretch(&self, value: f64) -> f64 {
         match self.coordinate {
             Coordinate::Plain => 1.0,
             Coordinate::Logarithm => value,

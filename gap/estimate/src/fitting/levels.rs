@@ -9,7 +9,6 @@ use nalgebra::{DMatrix, DVector};
 use super::free::{Coordinate, Free, Selection};
 use super::posterior::{Point, Posterior, free_step};
 use crate::EstimateError;
-use crate::gradient::information::is_level;
 
 /// Change of the logarithm of a level up to which its information is reused.
 const NEAR: f64 = 0.3;
@@ -40,7 +39,7 @@ impl Levels {
         let free = selection.free;
         let all = free.iter().zip(point.coordinates.iter());
         let levels: Vec<f64> = all
-            .filter(|(free, _)| is_level(free))
+            .filter(|(free, _)| free.unknown.is_level())
             .map(|(_, &coordinate)| coordinate)
             .collect();
         let is_near = |old: &[f64]| {
@@ -64,7 +63,7 @@ impl Levels {
         for (i, free) in free.iter().enumerate() {
             // Far below the optimum of a logarithm, the curvature of the likelihood is as large as its
             // slope, and much larger than expected at the optimum.
-            if free.coordinate == Coordinate::Logarithm && !is_level(free) {
+            if free.coordinate == Coordinate::Logarithm && !free.unknown.is_level() {
                 information[(i, i)] += point.gradient[i].abs();
             }
         }
@@ -74,7 +73,7 @@ impl Levels {
 
 /// Whether a coordinate is the logarithm of a level.
 fn is_logarithm(free: &Free) -> bool {
-    is_level(free) && free.coordinate == Coordinate::Logarithm
+    free.unknown.is_level() && free.coordinate == Coordinate::Logarithm
 }
 
 /// Whether a level differs so much between two points that their gradients do not show the curvature.

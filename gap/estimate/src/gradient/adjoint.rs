@@ -4,8 +4,6 @@
 //! its adjoint needs no derivative of a triangularisation. Gradients with respect to covariances
 //! are symmetric.
 
-use std::ops::Range;
-
 use crate::data::setup::{Disturbance, Measured};
 use crate::kalman::filter::Pass;
 use crate::kalman::tape::{Record, Sample, SampleTape, StepTape};
@@ -40,9 +38,8 @@ struct Backward<'p, 'a> {
     slopes: Vec<f64>,
 }
 
-/// Adds to `gradient` that of the log-likelihood of the given rows, all of them depending on
-/// everything before.
-pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [f64]) {
+/// Adds to `gradient` that of the log-likelihood.
+pub(crate) fn adjoint(pass: &mut Pass<'_>, gradient: &mut [f64]) {
     let mut tape = std::mem::take(&mut pass.tape);
     let (n, s) = (pass.sizes.n, pass.system.plant.speeds);
     let zeros = |len| vec![0.0; len];
@@ -76,7 +73,7 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
         }
         Record::Measure { samples, held, .. } => {
             let samples = &shared.samples[samples.clone()];
-            back.measure(samples, held, rows, tape, gradient);
+            back.measure(samples, held, tape, gradient);
         }
         Record::Close { t, held, tape: at } => {
             let [z, root] = pieces(&mut tape[*at..], [n, n * n]);
@@ -267,7 +264,6 @@ impl Backward<'_, '_> {
         &mut self,
         samples: &[Sample],
         held: &[f64],
-        rows: &Range<usize>,
         tape: &mut [f64],
         gradient: &mut [f64],
     ) {
@@ -283,8 +279,7 @@ impl Backward<'_, '_> {
         let mut outputs = false;
         for sample in samples.iter().rev() {
             let on = pass.sizes.sample(&mut tape[sample.tape..]);
-            let seed = f64::from(u8::from(rows.contains(&sample.innovation.row)));
-            let by_quantity = self.scalar(sample, &on, &prior, &mut by_prior, seed, gradient);
+            let by_quantity = self.scalar(sample, &on, &prior, &mut by_prior, gradient);
             // `vector[0]` now holds the gradient with respect to the slope.
             let channel = sample.innovation.channel;
             let place = pass.system.layout.scale(channel);
@@ -340,7 +335,6 @@ impl Backward<'_, '_> {
         on: &SampleTape<'_>,
         prior: &[f64],
         by_prior: &mut [f64],
-        seed: f64,
         gradient: &mut [f64],
     ) -> f64 {
         let pass = self.pass;
@@ -353,10 +347,10 @@ impl Backward<'_, '_> {
         let [by_c, by_a] = &mut self.vector;
         // Contribution to the log-likelihood: −(ln 2πs + e²/s)/2.
         let along = dot(&self.z, a);
-        let by_e = (along - seed * e) / s;
+        let by_e = (along - e) / s;
         multiply(&self.p, a, n, by_a);
         let shrunk = dot(a, by_a);
-        let by_s = -0.5 * seed * (1.0 - e * e / s) / s + (shrunk - along * e) / (s * s);
+        let by_s = -0.5 * (1.0 - e * e / s) / s + (shrunk - along * e) / (s * s);
         scale(-2.0 / s, by_a);
         add_scaled(e / s, &self.z, by_a);
         add_scaled(by_s, c, by_a);

@@ -46,7 +46,9 @@ impl Estimation<'_> {
     ) -> Result<DMatrix<f64>, EstimateError> {
         let selection = Selection::new(&self.layout(), free)?;
         let mut information = DMatrix::zeros(free.len(), free.len());
-        let levels: Vec<usize> = (0..free.len()).filter(|&i| is_level(&free[i])).collect();
+        let levels: Vec<usize> = (0..free.len())
+            .filter(|&i| free[i].unknown.is_level())
+            .collect();
         if levels.is_empty() {
             return Ok(information);
         }
@@ -70,12 +72,4 @@ impl Estimation<'_> {
         let runs = 0..self.recordings().len();
         runs.max_by_key(rows).unwrap_or(0)
     }
-}
-
-/// Whether a value affects the variances of innovations and not their mean.
-pub(crate) fn is_level(free: &Free) -> bool {
-    matches!(
-        free.unknown,
-        Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Spread { .. }
-    )
 }

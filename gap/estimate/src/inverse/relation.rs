@@ -12,7 +12,6 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{InputEquations, InverseError, ZERO};
-use crate::fitting::regression::Moment;
 use appell_runtime::model::{At, Gradient, Model};
 use appell_spectra::singular::Singular;
 
@@ -23,6 +22,19 @@ pub struct Motion {
     pub t: f64,
     /// q, q̇ and q̈ in SI.
     pub derivatives: [DVector<f64>; 3],
+}
+
+/// A sample of a motion with its pseudo-accelerations, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moment {
+    /// Time in s.
+    pub t: f64,
+    /// State.
+    pub x: Vec<f64>,
+    /// Pseudo-accelerations ω̇, one per pseudo-velocity.
+    pub accelerations: Vec<f64>,
+    /// Inputs and signals.
+    pub u: Vec<f64>,
 }
 
 /// Quantities of the equations at a motion, and their derivatives.

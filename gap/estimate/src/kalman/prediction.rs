@@ -22,8 +22,6 @@ pub struct Predicted {
     pub row: usize,
     /// Channel.
     pub channel: usize,
-    /// Time in s from the origin to the sample.
-    pub ahead: f64,
     /// Measured minus predicted value, in SI.
     pub residual: f64,
 }
@@ -173,16 +171,11 @@ impl<'a> Walk<'a> {
     /// Advances until every channel was sampled at the horizon; for an infinite one all samples are
     /// reported.
     fn on(&mut self, actions: &[Action], horizon: f64, predicted: &mut Vec<Predicted>) {
-        let start = self.recording.times()[self.origin];
         let mut open = vec![true; self.system.setup.channels.len()];
         let everything = horizon.is_infinite();
-        let mut t = start;
         for &action in actions {
             match action {
-                Action::Advance(advance) => {
-                    self.advance(advance);
-                    t = advance.t + advance.h;
-                }
+                Action::Advance(advance) => self.advance(advance),
                 Action::Switch { row, input } => {
                     let StateSpace { setup, layout, .. } = self.system;
                     let switch = Switch {
@@ -198,7 +191,7 @@ impl<'a> Walk<'a> {
                     if !is_reported(self.recording, self.origin, row, horizon) {
                         continue;
                     }
-                    self.compare(row, channel, t - start, &mut open, predicted);
+                    self.compare(row, channel, &mut open, predicted);
                     if everything {
                         open.fill(true);
                     } else if !open.contains(&true) {
@@ -214,7 +207,6 @@ impl<'a> Walk<'a> {
         &mut self,
         row: usize,
         only: Option<usize>,
-        ahead: f64,
         open: &mut [bool],
         predicted: &mut Vec<Predicted>,
     ) {
@@ -254,7 +246,6 @@ impl<'a> Walk<'a> {
                 origin: self.origin,
                 row,
                 channel,
-                ahead,
                 residual: if residual.is_nan() {
                     f64::INFINITY
                 } else {

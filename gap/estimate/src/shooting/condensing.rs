@@ -143,27 +143,6 @@ impl Condensed {
         }
         sum
     }
-
-    /// Half the sum of squares and its gradient with respect to the free values, with the states
-    /// held.
-    pub(super) fn slope(pieces: &[Vec<Segment>], weights: &Weights<'_>) -> (f64, DVector<f64>) {
-        let (n, q) = (weights.sizes.len(), weights.free);
-        let mut slope = DVector::zeros(q);
-        for (run, pieces) in pieces.iter().enumerate() {
-            for (place, piece) in pieces.iter().enumerate() {
-                let residuals = piece.rows.column(n + q);
-                slope += piece.rows.columns(n, q).tr_mul(&residuals);
-                if place + 1 < pieces.len() {
-                    let mut gap = gap(piece, &weights.states[run][place + 1], weights);
-                    for (gap, size) in gap.iter_mut().zip(weights.sizes) {
-                        *gap /= size * weights.gap;
-                    }
-                    slope -= piece.by.columns(n, q).tr_mul(&gap);
-                }
-            }
-        }
-        (Self::objective(pieces, weights), slope)
-    }
 }
 
 /// The gap after a segment in units of the admitted one.

@@ -55,20 +55,6 @@ pub enum SamplesError {
         /// Largest one.
         most: usize,
     },
-    /// Unequal steps, for a method that needs equal ones.
-    #[error("the steps lie between {shortest} s and {longest} s; this filter needs equal ones")]
-    NotUniform {
-        /// Shortest step.
-        shortest: f64,
-        /// Longest step.
-        longest: f64,
-    },
-    /// A missing value, for a method that needs all.
-    #[error("the value of row {row} is missing; this filter needs all of them")]
-    Missing {
-        /// Row, counted from 0.
-        row: usize,
-    },
     /// Overflow of the arithmetic.
     #[error("the estimate is not finite near {t} s")]
     NotFinite {
@@ -129,14 +115,6 @@ impl<'s> Samples<'s> {
         }
         Ok(found)
     }
-
-    /// Mean step in s; zero with fewer than two times.
-    pub fn mean_step(&self) -> f64 {
-        match self.times {
-            [first, .., last] => (last - first) / (self.times.len() - 1) as f64,
-            _ => 0.0,
-        }
-    }
 }
 
 /// A positive and finite setting.
@@ -196,11 +174,6 @@ impl Estimate {
     /// Whether there is no time.
     pub fn is_empty(&self) -> bool {
         self.means.is_empty()
-    }
-
-    /// Highest derivative.
-    pub fn order(&self) -> usize {
-        self.width - 1
     }
 
     /// Value and derivatives at the time of a row, from order 0.

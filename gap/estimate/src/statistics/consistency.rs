@@ -39,11 +39,6 @@ impl Consistency {
         }
     }
 
-    /// Whether the squares are inside their interval.
-    pub fn has_right_size(&self) -> bool {
-        (self.band[0]..=self.band[1]).contains(&self.squares)
-    }
-
     /// Whether the correlation is inside its interval.
     pub fn is_white(&self) -> bool {
         (self.correlation_band[0]..=self.correlation_band[1]).contains(&self.correlation)

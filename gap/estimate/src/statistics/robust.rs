@@ -8,89 +8,44 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
-use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use crate::EstimateError;
 use crate::fitting::fit::{Fit, inverse};
 use crate::gradient::sensitivity::Sensitivity;
 
-/// Scores of a fit in blocks of rows.
-#[derive(Debug, Clone)]
-pub struct Blocks {
-    /// Inverse of the curvature.
-    covariance: DMatrix<f64>,
-    /// Score of each block.
-    scores: Vec<DVector<f64>>,
-}
-
-impl Blocks {
-    /// Blocks of a number of rows within runs. `sensitivity` is that of the fit.
-    pub fn of(fit: &Fit, sensitivity: &Sensitivity, rows: usize) -> Result<Self, EstimateError> {
-        let all = sensitivity.scores();
-        let mut blocks: BTreeMap<(usize, usize), DVector<f64>> = BTreeMap::new();
-        for (place, (run, sample)) in sensitivity.samples.iter().enumerate() {
-            let block = (*run, sample.row / rows.max(1));
-            let sum = blocks
-                .entry(block)
-                .or_insert_with(|| DVector::zeros(all.ncols()));
-            *sum += all.row(place).transpose();
-        }
-        Ok(Self {
-            covariance: inverse(&fit.curvature, &fit.at_limit)?,
-            scores: blocks.into_values().collect(),
-        })
+/// The robust covariance of the coordinates, `H⁻¹ J H⁻¹`: H the observed curvature, J the sum of the
+/// squares of the scores of blocks about their mean.
+///
+/// A block has a number of `rows` within a run; with fewer than about twenty blocks the covariance is
+/// unreliable. `sensitivity` is that of the fit.
+pub fn robust_covariance(
+    fit: &Fit,
+    sensitivity: &Sensitivity,
+    rows: usize,
+) -> Result<DMatrix<f64>, EstimateError> {
+    let all = sensitivity.scores();
+    let mut blocks: BTreeMap<(usize, usize), DVector<f64>> = BTreeMap::new();
+    for (place, (run, sample)) in sensitivity.samples.iter().enumerate() {
+        let block = (*run, sample.row / rows.max(1));
+        let sum = blocks
+            .entry(block)
+            .or_insert_with(|| DVector::zeros(all.ncols()));
+        *sum += all.row(place).transpose();
     }
-
-    /// Number of blocks. With fewer than about twenty the covariance is unreliable.
-    pub fn len(&self) -> usize {
-        self.scores.len()
+    let covariance = inverse(&fit.curvature, &fit.at_limit)?;
+    let k = covariance.nrows();
+    let mut mean = DVector::zeros(k);
+    for score in blocks.values() {
+        mean += score;
     }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.scores.is_empty()
+    mean /= blocks.len().max(1) as f64;
+    let mut squares = DMatrix::zeros(k, k);
+    for score in blocks.values() {
+        let centred = score - &mean;
+        squares += &centred * centred.transpose();
     }
-
-    /// The robust covariance of the coordinates, `H⁻¹ J H⁻¹`: H the observed curvature, J the sum of the
-    /// squares of the scores about their mean.
-    pub fn covariance(&self) -> DMatrix<f64> {
-        let centred = self.centred();
-        let k = self.covariance.nrows();
-        let mut squares = DMatrix::zeros(k, k);
-        for score in &centred {
-            squares += score * score.transpose();
-        }
-        // Correction for the estimated mean.
-        let count = centred.len() as f64;
-        let correction = count / (count - 1.0).max(1.0);
-        &self.covariance * squares * &self.covariance * correction
-    }
-
-    /// Bootstrap changes of the coordinates: blocks drawn with replacement, one scoring step each
-    /// (P. Kline and A. Santos, *A score based approach to wild bootstrap inference*, 2012). The
-    /// same `seed` gives the same draws.
-    pub fn bootstrap(&self, draws: usize, seed: u64) -> Vec<DVector<f64>> {
-        let centred = self.centred();
-        let mut random = SplitMix64::seed_from_u64(seed);
-        let count = centred.len() as u64;
-        let change = |_| {
-            let mut sum = DVector::zeros(self.covariance.nrows());
-            for _ in 0..count {
-                let place = usize::try_from(random.next_u64() % count).unwrap_or(0);
-                sum += &centred[place];
-            }
-            &self.covariance * sum
-        };
-        (0..draws).map(change).collect()
-    }
-
-    fn centred(&self) -> Vec<DVector<f64>> {
-        let mut mean = DVector::zeros(self.covariance.nrows());
-        for score in &self.scores {
-            mean += score;
-        }
-        mean /= self.scores.len().max(1) as f64;
-        self.scores.iter().map(|score| score - &mean).collect()
-    }
+    // Correction for the estimated mean.
+    let count = blocks.len() as f64;
+    let correction = count / (count - 1.0).max(1.0);
+    Ok(&covariance * squares * &covariance * correction)
 }

@@ -62,7 +62,7 @@ impl Content<'_> {
     fn write(&self, to: &mut String) -> std::fmt::Result {
         writeln!(
             to,
-            "# Drafted from the recordings. A line that begins with `# ?` asks what they do not tell.\n"
+            "# Drafted from the recordings. A line that begins with `# ?` asks for what is missing.\n"
         )?;
         writeln!(to, "mechanism   = {}", quoted(self.mechanism))?;
         writeln!(to, "description = \"\"")?;

@@ -203,15 +203,6 @@ impl Skeleton {
     pub fn body(&self, name: &str) -> Option<usize> {
         self.bodies.iter().position(|body| body == name)
     }
-
-    /// The place of a name.
-    pub fn place(&self, name: &str) -> Option<Place> {
-        if name == self.rider.centre {
-            return Some(Place::Centre);
-        }
-        let at = self.points.iter().position(|point| point.name == name);
-        at.map(Place::Point)
-    }
 }
 
 /// Reads section by section and collects the mistakes of all of them.

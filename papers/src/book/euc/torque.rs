@@ -98,8 +98,8 @@ impl Planar {
         without[0] = None;
         let second = equations.solve(&without, &all);
         Ok([
-            first.map_err(computation)?.inputs[0],
-            second.map_err(computation)?.inputs[0],
+            first.map_err(computation)?[0],
+            second.map_err(computation)?[0],
         ])
     }
 

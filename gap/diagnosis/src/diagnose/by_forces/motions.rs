@@ -1,6 +1,6 @@
 //! Residual forces of recorded motions, and their derivatives by the sizes of effects.
 
-use appell_estimate::Moment;
+use appell_estimate::inverse::Moment;
 use appell_recordings::{DataSet, Part as OfSet};
 use appell_runtime::model::{At, Model};
 use appell_spec::mechanism::CoordinateId;

@@ -12,8 +12,8 @@ use super::super::localise::force_unit;
 use super::super::prediction::{Errors, Paired};
 use super::super::prior::names;
 use super::super::report::{
-    Detectable, ErrorOf, GapVerdict, HowFar, Hypothesis as Told, Report, ShareOf, UNKNOWN, Value,
-    Where, Yardstick,
+    Detectable, ErrorOf, GapVerdict, HowFar, Hypothesis as Told, Report, ShareOf, Value, Where,
+    Yardstick,
 };
 use super::super::{DiagnoseError, Options};
 use super::hypothesis::Hypothesis;
@@ -68,7 +68,6 @@ pub(super) fn report(
             .as_ref()
             .map_or_else(Vec::new, |robot| robot.locked.clone()),
         verdict: first.after(&which, far.as_ref(), false),
-        is_by_simulation: false,
         is_by_forces: true,
         rows: [training.all().count(), set.rows()],
         disturbances: (names.zip(stayed))
@@ -77,25 +76,16 @@ pub(super) fn report(
         pictures: (options.pictures && first != GapVerdict::NoGap)
             .then(|| pictures::of(model, found, training, test, &place)),
         place: match first {
-            GapVerdict::NoGap => Where::nowhere(),
+            GapVerdict::NoGap => Where::default(),
             _ => place,
         },
         which: shortened(&which).unwrap_or(which),
         tied,
         how_far: far,
         detectable: detectable(model, found, training),
-        failed: Vec::new(),
-        imperfections: Vec::new(),
-        left: None,
         independent: found.independent,
-        law: None,
-        change: None,
-        hints: Vec::new(),
-        tolerances: None,
-        interpolated: Vec::new(),
         found: self::found(model, &best.members),
-        horizons: Vec::new(),
-        experiment: None,
+        ..Report::default()
     })
 }
 
@@ -125,14 +115,7 @@ fn which(
             changes: Some(changes(model, set, fitted, motions)?),
         });
     }
-    which.push(Told {
-        effects: vec![UNKNOWN.to_owned()],
-        probability: found.unknown,
-        same_as: None,
-        log_bayes_factor: None,
-        parameters: Vec::new(),
-        changes: None,
-    });
+    which.push(Told::unknown(found.unknown));
     which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     Ok(which)
 }
@@ -263,7 +246,7 @@ pub(super) fn added(
 fn place(model: &EffectModel, found: &Findings, motions: &Motions) -> Where {
     let (nominal, best) = (found.nominal(), found.best());
     let Some(&first) = best.members.first() else {
-        return Where::nowhere();
+        return Where::default();
     };
     let info = model.info();
     let (mut squares, mut count) = (vec![0.0; info.speeds], 0.0_f64);

@@ -151,7 +151,7 @@ fn motions_begin_where_loops_close() {
     for words in [
         "robot.xml:4:",
         "`connect_1` cannot hold near",
-        "off by 0.3",
+        "residual is 0.3",
         "without couplings",
     ] {
         assert!(wrong.contains(words), "{words}\n{wrong}");

@@ -61,8 +61,8 @@ impl Fit {
             if is_over || ends {
                 let (mut promised, mut gain) = (DVector::zeros(free.len()), gain);
                 if !is_over {
-                    let (step, more) = scaling.step(&posterior, &point, &curvature, DAMPING);
-                    // If no step succeeds, the point is accepted if the predicted gain is small.
+                    let (step, more) = scaling.step(&posterior, &point, &information, DAMPING);
+                    // If no step succeeds, the point is accepted if the gain predicted by the expected curvature is small.
                     if !(0.0..=FLAT * effort.gain).contains(&more) {
                         (promised, gain) = (step, more);
                     }

@@ -13,7 +13,7 @@ use crate::EstimateError;
 /// Change of the logarithm of a level up to which its information is reused.
 const NEAR: f64 = 0.3;
 /// Change of the logarithm of a level up to which gradients are comparable.
-const STEADY: f64 = 0.5;
+const STEADY: f64 = 0.1;
 /// Largest residual in the information of levels, in standard deviations.
 const LARGEST: f64 = 3.0;
 /// Smallest ratio of variances that a step corrects at once.

@@ -14,7 +14,7 @@ viscous_friction@theta+spring@theta 15.2
 spring@theta 9.6
 unknown NaN
  0.0
-coulomb_friction@theta+spring@theta -40.2
+coulomb_friction@theta+spring@theta -40.3
 ";
 
 #[test]

@@ -6,14 +6,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::free::{Coordinate, Free, Selection};
+use super::free::{Coordinate, Free};
 use super::posterior::{Point, Posterior, free_step};
 use crate::EstimateError;
 
 /// Change of the logarithm of a level up to which its information is reused.
 const NEAR: f64 = 0.3;
-/// Change of the logarithm of a level up to which gradients are comparable.
-const STEADY: f64 = 0.1;
 /// Largest residual in the information of levels, in standard deviations.
 const LARGEST: f64 = 3.0;
 /// Smallest ratio of variances that a step corrects at once.
@@ -74,13 +72,6 @@ impl Levels {
 /// Whether a coordinate is the logarithm of a level.
 fn is_logarithm(free: &Free) -> bool {
     free.unknown.is_level() && free.coordinate == Coordinate::Logarithm
-}
-
-/// Whether a level differs so much between two points that their gradients do not show the curvature.
-pub(super) fn moved(selection: &Selection<'_>, from: &Point, to: &Point) -> bool {
-    let changes = (&to.coordinates - &from.coordinates).map(f64::abs);
-    let mut all = selection.free.iter().zip(changes.iter());
-    all.any(|(free, change)| is_logarithm(free) && *change > STEADY)
 }
 
 /// The step for an expected curvature from a point, and its predicted gain. Means and levels have no

@@ -1,14 +1,13 @@
 //! Fits by Fisher scoring: the information is computed anew for every step, which takes few passes
-//! of the filter ([`information`](crate::gradient::information)), and corrected along the last step by the change of the
-//! gradient, since it is wrong where the model is. For many fits of models that are nearly correct.
+//! of the filter ([`information`](crate::gradient::information)). For many fits of models that are
+//! nearly correct.
 
 use nalgebra::DVector;
 
-use super::curvature::learn;
 use super::fit::{Effort, Fit};
 use super::free::{Free, Selection};
 use super::level_scaling::LevelScaling;
-use super::levels::{self, Levels};
+use super::levels::Levels;
 use super::posterior::{Posterior, SUFFICIENT_DECREASE};
 use crate::EstimateError;
 use crate::estimation::Estimation;
@@ -46,12 +45,11 @@ impl Fit {
         let mut levels = Levels::default();
         let mut point = posterior.with_means(start)?;
         let mut information = levels.information(&posterior, &point)?;
-        let mut curvature = information.clone();
         let mut scaling = LevelScaling::of(&posterior, &point)?;
         let (mut damping, mut steps, mut has_failed) = (0.0, 0, false);
         let mut gained = [f64::INFINITY; LAST];
         loop {
-            let (step, gain) = scaling.step(&posterior, &point, &curvature, damping);
+            let (step, gain) = scaling.step(&posterior, &point, &information, damping);
             let promises_little = (0.0..=effort.gain).contains(&gain);
             let gains_little = gained.iter().sum::<f64>() < effort.gain;
             let reach = point.objective + GIVEN_UP.1 * gained.iter().sum::<f64>();
@@ -62,7 +60,7 @@ impl Fit {
                 let (mut promised, mut gain) = (DVector::zeros(free.len()), gain);
                 if !is_over {
                     let (step, more) = scaling.step(&posterior, &point, &information, DAMPING);
-                    // If no step succeeds, the point is accepted if the gain predicted by the expected curvature is small.
+                    // If no step succeeds, the point is accepted if the predicted gain is small.
                     if !(0.0..=FLAT * effort.gain).contains(&more) {
                         (promised, gain) = (step, more);
                     }
@@ -102,12 +100,8 @@ impl Fit {
                     if damping < DAMPED[0] {
                         damping = 0.0;
                     }
-                    information = levels.information(&posterior, &next)?;
-                    curvature.copy_from(&information);
-                    if !levels::moved(&selection, &point, &next) {
-                        learn(&mut curvature, &point, &next);
-                    }
                     point = next;
+                    information = levels.information(&posterior, &point)?;
                     scaling = LevelScaling::of(&posterior, &point)?;
                 }
                 None => damping = (MORE * damping).max(DAMPING),

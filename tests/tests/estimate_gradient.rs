@@ -203,7 +203,8 @@ fn it_is_exact_for_lags_and_delays() {
     (plain.lagging, plain.delayed) = (Vec::new(), Vec::new());
     let estimation = Estimation::new(&plain, &unseen).unwrap();
     let truth = noisy(&estimation, 0.02, 0.003);
-    let recordings = [record(&plain, &truth, &drive, &mut Random::of("late"))];
+    let recording = record(&plain, &truth, &drive, &mut Random::of("late"));
+    let recordings = [recording.after(&[-0.04, -0.015], &[0.3, -0.2, -0.4, 0.5])];
 
     let estimation = Estimation::new(&setup, &recordings).unwrap();
     let layout = estimation.layout();

@@ -403,11 +403,14 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Whether a lag of a channel is so short that it is equivalent to a delay.
+    /// Whether a lag is so short that it is equivalent to a delay.
     pub(super) fn is_too_short(&self, candidate: usize, sizes: &[f64]) -> bool {
-        let shortest = LAG_OF_CHANNEL[0] * self.step;
-        matches!(self.candidate(candidate).acts, Acts::Slow(_))
-            && sizes.iter().all(|size| *size < shortest)
+        let shortest = match self.candidate(candidate).acts {
+            Acts::Slow(_) => LAG_OF_CHANNEL[0],
+            Acts::Lag(_) => LAG[0],
+            _ => return false,
+        };
+        sizes.iter().all(|size| *size < shortest * self.step)
     }
 
     /// Number of sizes and shapes of some members.

@@ -362,7 +362,15 @@ impl<'b, 'a> Sets<'b, 'a> {
                 deviations,
             }
         });
-        let sizes = sizes.collect();
+        let sizes: Vec<SizeEstimates> = sizes.collect();
+        // The delay stands for a lag that no recording resolves.
+        let is_short = |own: &SizeEstimates| self.bench.is_too_short(own.candidate, &own.values);
+        let mut lags = sizes
+            .iter()
+            .filter(|own| matches!(self.bench.candidate(own.candidate).acts, Acts::Lag(_)));
+        if lags.clone().next().is_some() && lags.all(is_short) {
+            return None;
+        }
         members.extend(&self.fixed);
         members.sort_unstable();
         Some(Set {

@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use crate::effects::{Candidate, Part};
+use crate::effects::{Candidate, Family, Part};
 
 /// Number of motions along the recordings that are evaluated.
 const MOTIONS: usize = 100;
@@ -124,7 +124,9 @@ impl<'b> Yardsticks<'b> {
         let bench = self.bench;
         let has_others = candidate.brings.is_some() || candidate.hides.is_some();
         let creeps = |member: &usize| bench.candidate(*member).creeps();
-        if has_others || fitted.members.iter().any(creeps) {
+        // An error of a channel is no property of the rig, even if it acts in a loop.
+        let is_read = candidate.family == Family::Sensor;
+        if has_others || is_read || fitted.members.iter().any(creeps) {
             return None;
         }
         let model = bench.effects.with(&bench.locked(&fitted.members));

@@ -31,6 +31,14 @@ pub struct Recording {
     differences: Vec<(usize, f64)>,
 }
 
+/// How late an input acts, in s.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Late {
+    pub(crate) delay: f64,
+    /// The time constant of its lag, zero without one.
+    pub(crate) lag: f64,
+}
+
 /// A row of inputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Row {
@@ -56,6 +64,9 @@ struct Held {
     /// Number of inputs.
     count: usize,
 }
+
+/// Time constants after which a lag has forgotten its input.
+const FORGOTTEN: f64 = 40.0;
 
 impl Held {
     /// From half a row before the time of a row to half a row after it.
@@ -105,6 +116,22 @@ impl Held {
             0.5 * (after - before) * reach * reach
         };
         rows.map(of_row).sum::<f64>() / (to - from)
+    }
+
+    /// An input that lags, at a time, and its derivative by the time constant. It was at rest long before.
+    fn lagged_at(&self, input: usize, t: f64, time_constant: f64) -> [f64; 2] {
+        let past = t - FORGOTTEN * time_constant;
+        let (mut begin, mut lagged, mut slope) = (past, self.held_at(input, past), 0.0);
+        let rows = self.times.partition_point(|own| *own <= past)..;
+        let ends = self.times[rows].iter().copied();
+        for end in ends.take_while(|end| *end < t).chain([t]) {
+            let (held, times) = (self.held_at(input, begin), (end - begin) / time_constant);
+            let ahead = lagged - held;
+            let decay = (-times).exp();
+            slope = decay * (slope + ahead * times / time_constant);
+            (lagged, begin) = (held + decay * ahead, end);
+        }
+        [lagged, slope]
     }
 
     /// The line with the same moments: its value at the beginning and its slope.
@@ -251,10 +278,7 @@ impl Recording {
     /// A held input to which an output at a time reacts, with its slope, where it acts with a delay; `None` if it is that
     /// of the motion.
     pub(crate) fn of_output(&self, input: usize, t: f64, delay: f64) -> Option<[f64; 2]> {
-        let (held, are_means) = self.of_outputs.as_ref()?;
-        if input >= held.count || self.interpolation[input] != Interpolation::Hold {
-            return None;
-        }
+        let (held, are_means) = self.outputs_of(input)?;
         if !are_means {
             return Some([held.held_at(input, t - delay), 0.0]);
         }
@@ -262,6 +286,31 @@ impl Recording {
         let [first, last] = ends.map(|end| held.held_at(input, end));
         let slope = (last - first) / (ends[1] - ends[0]);
         Some([held.mean_between(input, ends), slope])
+    }
+
+    /// The same with a lag, with its derivative by the time constant.
+    pub(crate) fn of_lagged_output(&self, input: usize, t: f64, late: Late) -> Option<[f64; 2]> {
+        let (held, are_means) = self.outputs_of(input)?;
+        let at = |t: f64| held.lagged_at(input, t - late.delay, late.lag);
+        if !are_means {
+            return Some(at(t));
+        }
+        // u̅ = l̅ + τ dl/dt on average.
+        let ends = held.about(t);
+        let [first, last] = ends.map(at);
+        let change = [0, 1].map(|i| (last[i] - first[i]) / (ends[1] - ends[0]));
+        let mean = held.mean_between(input, ends.map(|end| end - late.delay));
+        Some([
+            mean - late.lag * change[0],
+            -change[0] - late.lag * change[1],
+        ])
+    }
+
+    /// The inputs of outputs, and whether these are means, where one is held.
+    fn outputs_of(&self, input: usize) -> Option<(&Held, bool)> {
+        let (held, are_means) = self.of_outputs.as_ref()?;
+        let is_held = input < held.count && self.interpolation[input] == Interpolation::Hold;
+        is_held.then_some((held, *are_means))
     }
 
     /// The duration of the output at a time, if outputs are means.
@@ -273,17 +322,19 @@ impl Recording {
 
     /// Of a rate that follows a held input: the difference of its mean over the time of an output from its value at the
     /// middle, per unit of its slope.
-    pub(crate) fn kinks_of_output(&self, input: usize, t: f64, delay: f64) -> f64 {
-        match &self.of_outputs {
-            Some((held, true)) if input < held.count => {
-                if self.interpolation[input] != Interpolation::Hold {
-                    return 0.0;
-                }
-                let ends = held.about(t).map(|end| end - delay);
-                held.kinks(input, ends, t - delay)
-            }
-            _ => 0.0,
+    pub(crate) fn kinks_of_output(&self, input: usize, t: f64, late: Late) -> f64 {
+        let Some((held, true)) = self.outputs_of(input) else {
+            return 0.0;
+        };
+        let ends = held.about(t).map(|end| end - late.delay);
+        let kinks = held.kinks(input, ends, t - late.delay);
+        if late.lag == 0.0 {
+            return kinks;
         }
+        // By parts from u = l + τ dl/dt.
+        let [now, _] = held.lagged_at(input, t - late.delay, late.lag);
+        let mean = self.of_lagged_output(input, t, late);
+        kinks + mean.map_or(0.0, |[mean, _]| late.lag * (now - mean))
     }
 
     /// Number of rows of inputs before the first one.
@@ -320,6 +371,25 @@ impl Recording {
             None if self.earlier_len() == 0 => self.inputs(0)[input],
             row => self.command(Row::Earlier(row.unwrap_or(0)), input)[0],
         }
+    }
+
+    /// By how much an input that lags is ahead of its first row there, and the derivative of that by its time constant:
+    /// the inputs before that row, held from row to row, after a rest.
+    pub(crate) fn lag_before(&self, input: usize, time_constant: f64) -> [f64; 2] {
+        let now = self.inputs(0)[input];
+        let values = self.earlier.inputs.iter().skip(input);
+        let mut values = values.step_by(self.columns[0]).copied();
+        let (mut lagged, mut slope) = (values.next().unwrap_or(now), 0.0);
+        let mut held = lagged;
+        let ends = self.earlier.times.iter().skip(1).chain(&self.times[..1]);
+        for (from, to) in self.earlier.times.iter().zip(ends) {
+            let times = (to - from) / time_constant;
+            let decay = (-times).exp();
+            slope = decay * (slope + (lagged - held) * times / time_constant);
+            lagged = held + decay * (lagged - held);
+            held = values.next().unwrap_or(held);
+        }
+        [lagged - now, slope]
     }
 
     /// Times in s.
@@ -470,6 +540,66 @@ mod tests {
     }
 
     #[test]
+    fn an_input_that_lags_begins_where_those_before_have_left_it() -> Result<(), EstimateError> {
+        let recording = Recording::new(vec![3.0, 4.0], vec![5.0, 5.0], vec![])?;
+        assert_eq!(recording.lag_before(0, 0.4).map(f64::to_bits), [0, 0]);
+        // From 1 to 2 for a second, then to 4 for another one.
+        let recording = recording.after(&[0.0, 1.0, 2.0], &[1.0, 2.0, 4.0]);
+        let lagged = |tau: f64| {
+            let decay = (-1.0 / tau).exp();
+            4.0 + decay * (2.0 + decay * (1.0 - 2.0) - 4.0) - 5.0
+        };
+        let [ahead, slope] = recording.lag_before(0, 0.4);
+        assert!((ahead - lagged(0.4)).abs() < 1e-15);
+        let difference = (lagged(0.4 + 1e-6) - lagged(0.4 - 1e-6)) / 2e-6;
+        assert!((slope - difference).abs() < 1e-9);
+        Ok(())
+    }
+
+    #[test]
+    fn outputs_are_means_of_an_input_that_lags_too() -> Result<(), EstimateError> {
+        let (times, inputs) = full_rate();
+        let means = stairs()?.with_outputs(true, times.clone(), inputs.clone());
+        let readings = stairs()?.with_outputs(false, times, inputs);
+        let late = |lag| Late { delay: 0.25, lag };
+        // By quadrature: the stairs, filtered, from 1.5 to 2.5 s.
+        let lag = 0.3;
+        let lagged = |t: f64| {
+            let steps = (1..5)
+                .map(|step| f64::from(step) + 0.25)
+                .filter(|step| *step < t);
+            steps
+                .map(|step| 1.0 - ((step - t) / lag).exp())
+                .sum::<f64>()
+        };
+        let parts = 100_000;
+        let middles = (0..parts).map(|part| 1.5 + (f64::from(part) + 0.5) / f64::from(parts));
+        let mean = middles.clone().map(lagged).sum::<f64>() / f64::from(parts);
+        let moment = middles.map(|t| {
+            let arm = if t < 2.0 { 1.5 - t } else { 2.5 - t };
+            arm * (lagged(t) - lagged(2.0)) / f64::from(parts)
+        });
+        let of = |lag| {
+            means
+                .of_lagged_output(0, 2.0, late(lag))
+                .unwrap_or_default()
+        };
+        assert!((of(lag)[0] - mean).abs() < 1e-8);
+        let slope = (of(lag + 1e-5)[0] - of(lag - 1e-5)[0]) / 2e-5;
+        assert!((of(lag)[1] - slope).abs() < 1e-8);
+        let kinks = means.kinks_of_output(0, 2.0, late(lag));
+        assert!((kinks - moment.sum::<f64>()).abs() < 1e-6);
+        let now = readings
+            .of_lagged_output(0, 2.0, late(lag))
+            .unwrap_or_default();
+        assert!((now[0] - lagged(2.0)).abs() < 1e-14);
+        // A short lag is none.
+        let [short, none] = [1e-9, 0.0].map(|lag| means.kinks_of_output(0, 2.0, late(lag)));
+        assert!((short - none).abs() < 1e-8);
+        Ok(())
+    }
+
+    #[test]
     fn outputs_are_means_about_their_row_or_readings_with_its_command() -> Result<(), EstimateError>
     {
         let (times, inputs) = full_rate();
@@ -477,7 +607,8 @@ mod tests {
         assert_eq!(means.of_output(0, 2.0, 0.0), Some([1.5, 1.0]));
         assert_eq!(means.of_output(0, 2.0, 1.0), Some([0.5, 1.0]));
         // A rate that follows the input has a kink at the row, and its mean over ±1/2 is 1/8 above it.
-        let kinks = [0.0, 0.25].map(|delay| means.kinks_of_output(0, 2.0, delay));
+        let late = |delay, lag| Late { delay, lag };
+        let kinks = [0.0, 0.25].map(|delay| means.kinks_of_output(0, 2.0, late(delay, 0.0)));
         assert_eq!(
             kinks.map(f64::to_bits),
             [0.125_f64, 0.03125].map(f64::to_bits)

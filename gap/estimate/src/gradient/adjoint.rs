@@ -71,9 +71,14 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, gradient: &mut [f64]) {
             let on = shared.sizes.step(&mut tape[*at..]);
             back.advance(*advance, &on, gradient);
         }
-        Record::Measure { samples, held, .. } => {
+        Record::Measure {
+            samples,
+            held,
+            lags,
+            ..
+        } => {
             let samples = &shared.samples[samples.clone()];
-            back.measure(samples, held, tape, gradient);
+            back.measure(samples, [held, lags], tape, gradient);
         }
         Record::Close { t, held, tape: at } => {
             let [z, root] = pieces(&mut tape[*at..], [n, n * n]);
@@ -97,6 +102,10 @@ impl Backward<'_, '_> {
         }
         add(&self.parameters, gradient);
         add(&self.lags, &mut gradient[layout.lag(0)..]);
+        let first = self.pass.system.setup.model.info().state_len();
+        for (lag, [_, slope]) in self.pass.before.iter().enumerate() {
+            gradient[layout.lag(lag)] += slope * self.z[first + lag];
+        }
     }
 
     /// Loops that were closed.
@@ -263,7 +272,7 @@ impl Backward<'_, '_> {
     fn measure(
         &mut self,
         samples: &[Sample],
-        held: &[f64],
+        [held, lags]: [&[f64]; 2],
         tape: &mut [f64],
         gradient: &mut [f64],
     ) {
@@ -303,6 +312,12 @@ impl Backward<'_, '_> {
         add(&by_prior, &mut self.z);
         if outputs {
             self.inputs.fill(0.0);
+            let states = pass.system.setup.model.info().state_len();
+            let lagged = states..states + lags.len();
+            for slopes in self.slopes.chunks_exact_mut(n) {
+                slopes[lagged.clone()].fill(0.0);
+            }
+            let motion = self.z[lagged.clone()].to_vec();
             let t = pass.time_of(&first.innovation);
             let place = Place::new(pass.system.layout, pass.values, t, &prior, held);
             let mut sums = Sums {
@@ -314,6 +329,13 @@ impl Backward<'_, '_> {
             let weights = [self.mu.as_slice(), &self.slopes];
             let plant = pass.system.plant;
             plant.output_adjoint(place, &mut self.scratch, weights, &mut sums);
+            // Inputs that lag are not those of the motion.
+            for ((sum, own), (lag, slope)) in
+                (self.z[lagged].iter_mut().zip(motion)).zip(lags.iter().enumerate())
+            {
+                gradient[pass.system.layout.lag(lag)] += (*sum - own) * slope;
+                *sum = own;
+            }
             let channel = first.innovation.channel;
             if pass.system.setup.channels[channel].longest_delay.is_some() {
                 let delay = pass.system.layout.sensor_delay(channel);

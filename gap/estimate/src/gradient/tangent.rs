@@ -205,10 +205,15 @@ impl<'p, 'a> Forward<'p, 'a> {
         let whole = whole.map_or(0.0, |(last, first)| last - first);
         let mut z = zeros(n * columns);
         for (column, direction) in directions.iter().enumerate() {
-            if let Direction::Value(Unknown::Initial { run, state }) = *direction
-                && run == pass.run
-            {
-                z[state * columns + column] = 1.0;
+            match *direction {
+                Direction::Value(Unknown::Initial { run, state }) if run == pass.run => {
+                    z[state * columns + column] = 1.0;
+                }
+                Direction::Value(Unknown::Lag(lag)) => {
+                    let moved = pass.before.get(lag).map_or(0.0, |[_, slope]| *slope);
+                    z[(info.state_len() + lag) * columns + column] = moved;
+                }
+                _ => {}
             }
         }
         Self {
@@ -448,14 +453,17 @@ impl<'p, 'a> Forward<'p, 'a> {
     fn measure(&mut self, first: usize) {
         let (n, columns) = (self.pass.sizes.n, self.columns);
         // The inputs of outputs that were read are on record.
-        let held = match self.pass.records.last() {
-            Some(Record::Measure { held, .. }) if !held.is_empty() => held.clone(),
-            _ => self.pass.held.clone(),
+        let (held, by_lags) = match self.pass.records.last() {
+            Some(Record::Measure { held, lags, .. }) if !held.is_empty() => {
+                (held.clone(), lags.clone())
+            }
+            _ => (self.pass.held.clone(), Vec::new()),
         };
+        let states = self.estimation.setup().model.info().state_len();
         for index in first..self.pass.samples.len() {
             let sample = self.pass.samples[index];
             let channel = sample.innovation.channel;
-            let (by_parameters, by_inputs) = self.output_slope(index, &held);
+            let (by_states, by_parameters, by_inputs) = self.output_slope(index, &held);
             let t = self.pass.time_of(&sample.innovation);
             let SampleTape { c, a, z, .. } =
                 self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
@@ -488,6 +496,11 @@ impl<'p, 'a> Forward<'p, 'a> {
                     Direction::LateInput(input) if !by_inputs.is_empty() => {
                         by_inputs[input] * command::slope(&held, input, t)
                     }
+                    Direction::Value(Unknown::Lag(lag))
+                        if lag < by_lags.len() && !by_states.is_empty() =>
+                    {
+                        -by_states[states + lag] * by_lags[lag]
+                    }
                     _ => 0.0,
                 };
             }
@@ -509,13 +522,14 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
-    /// Derivatives of an output that is read with respect to the parameters and the declared inputs; none for a state.
-    fn output_slope(&mut self, index: usize, held: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// Derivatives of an output that is read with respect to the states, the parameters and the declared inputs; none for
+    /// a state.
+    fn output_slope(&mut self, index: usize, held: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let sample = self.pass.samples[index];
         let setup = self.estimation.setup();
         let channel = sample.innovation.channel;
         let Measured::Output(output) = setup.reads(channel) else {
-            return (Vec::new(), Vec::new());
+            return (Vec::new(), Vec::new(), Vec::new());
         };
         let info = setup.model.info();
         let n = self.pass.sizes.n;
@@ -547,7 +561,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             .system
             .plant
             .output_adjoint(place, &mut self.scratch, weights, &mut sums);
-        (by.1, by_inputs)
+        (by.0, by.1, by_inputs)
     }
 }
 

@@ -18,7 +18,7 @@ use crate::data::recording::Recording;
 use crate::data::setup::{Disturbance, Measured, Setup};
 use crate::matrix::{add_scaled, dot, multiply, pieces, scale, transposed_multiply};
 use crate::motion::closure::Closure;
-use crate::motion::command::{self, Averaging, Switch};
+use crate::motion::command::{self, Reading as OfOutputs, Switch};
 use crate::motion::plant::{Place, Plant, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, Span, step, within};
@@ -89,6 +89,9 @@ pub(crate) struct Pass<'a> {
     pub(crate) z: Vec<f64>,
     pub(crate) root: Vec<f64>,
     pub(crate) held: Vec<f64>,
+    /// Of each lag of an input: how far inputs before the first row have moved it, and the derivative by its time
+    /// constant.
+    pub(crate) before: Vec<[f64; 2]>,
     scratch: Scratch,
     pub(crate) closure: Option<Closure>,
     spread: Vec<f64>,
@@ -133,7 +136,7 @@ impl<'a> Pass<'a> {
             pass.tape
                 .reserve(steps * sizes.step_len() + samples * sizes.sample_len());
         }
-        pass.start();
+        pass.start(recording);
         pass
     }
 
@@ -169,6 +172,7 @@ impl<'a> Pass<'a> {
             z: zeros(n),
             root: zeros(n * n),
             held: zeros(sizes.commands),
+            before: Vec::new(),
             scratch: plant.scratch(),
             closure: Closure::of(plant),
             spread: zeros(2 * n * (n + sizes.disturbances)),
@@ -225,7 +229,8 @@ impl<'a> Pass<'a> {
         &self.values[start..start + self.system.layout.lags]
     }
 
-    fn start(&mut self) {
+    /// The initial state. Inputs before the first row have moved the lags of inputs.
+    fn start(&mut self, recording: &Recording) {
         let n = self.sizes.n;
         let (initial, spread) = (
             self.system.layout.initial(self.run),
@@ -234,6 +239,15 @@ impl<'a> Pass<'a> {
         self.z.copy_from_slice(&self.values[initial..initial + n]);
         for i in 0..n {
             self.root[i * (n + 1)] = self.values[spread + i];
+        }
+        let setup = self.system.setup;
+        let before = setup.lagging.iter().zip(self.lags());
+        self.before = before
+            .map(|(&input, &lag)| recording.lag_before(input, lag))
+            .collect();
+        let first = setup.model.info().state_len();
+        for (lag, [ahead, _]) in self.z[first..].iter_mut().zip(&self.before) {
+            *lag += ahead;
         }
     }
 
@@ -374,7 +388,8 @@ impl<'a> Pass<'a> {
         let measured = recording.measured(row);
         let t = recording.times()[row];
         let channels = self.sampled(measured, only);
-        let held = self.linearise_outputs(recording, row, self.sampling_time(t, only), &channels);
+        let (held, lags) =
+            self.linearise_outputs(recording, row, self.sampling_time(t, only), &channels);
         let prior = self.record(channels.len() * self.sizes.sample_len());
         for (count, &channel) in channels.iter().enumerate() {
             let reading = Reading {
@@ -390,7 +405,12 @@ impl<'a> Pass<'a> {
         }
         let samples = first..self.samples.len();
         let row = only.is_none().then_some(row);
-        self.records.push(Record::Measure { row, samples, held });
+        self.records.push(Record::Measure {
+            row,
+            samples,
+            held,
+            lags,
+        });
         Ok(())
     }
 
@@ -417,14 +437,15 @@ impl<'a> Pass<'a> {
         (0..channels.len()).filter(is_sampled).collect()
     }
 
-    /// Evaluates the outputs and their slopes if any is sampled; then returns their inputs.
+    /// Evaluates the outputs and their slopes if any is sampled; then returns their inputs, and the derivatives of those
+    /// that lag.
     fn linearise_outputs(
         &mut self,
         recording: &Recording,
         row: usize,
         t: f64,
         channels: &[usize],
-    ) -> Vec<f64> {
+    ) -> (Vec<f64>, Vec<f64>) {
         let StateSpace {
             setup,
             plant,
@@ -432,15 +453,19 @@ impl<'a> Pass<'a> {
         } = self.system;
         let is_output = |&c: &usize| matches!(setup.reads(c), Measured::Output(_));
         if !channels.iter().any(is_output) {
-            return Vec::new();
+            return (Vec::new(), Vec::new());
         }
-        let held = command::of_reading(recording, row, &self.held, setup, layout, self.values);
-        let place = Place::new(layout, self.values, t, &self.z, &held);
-        let averaging = Averaging::of(recording, row, setup, layout, self.values);
-        let z = plant.mean_state(place, &mut self.scratch, averaging.as_ref());
+        let read = OfOutputs::of(recording, row, &self.held, setup, layout, self.values);
+        let place = Place::new(layout, self.values, t, &self.z, &read.held);
+        let z = plant.read_state(place, &mut self.scratch, &read);
         let (outputs, slopes) = (&mut self.outputs, &mut self.output_slopes);
         plant.outputs(Place { z: &z, ..place }, &mut self.scratch, outputs, slopes);
-        held
+        let first = setup.model.info().state_len();
+        for slopes in slopes.chunks_exact_mut(self.sizes.n) {
+            slopes[first..][..read.lags.len()].fill(0.0);
+        }
+        let by_lags = read.lags.iter().map(|[_, slope]| *slope);
+        (read.held, by_lags.collect())
     }
 
     /// Records the state, the root of P and the output row before a scalar update. Returns the quantity without scale

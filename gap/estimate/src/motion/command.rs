@@ -3,7 +3,7 @@
 //! On tapes an input is the time from which it counts, and the coefficients of the powers of the time since then.
 
 use crate::data::layout::Layout;
-use crate::data::recording::{Recording, Row};
+use crate::data::recording::{Late, Recording, Row};
 use crate::data::setup::Setup;
 
 /// Numbers of an input.
@@ -84,59 +84,72 @@ impl Switch {
     }
 }
 
-/// The inputs of outputs that are read at a row: those of the motion, or as [`Recording::of_output`].
-pub(crate) fn of_reading(
-    recording: &Recording,
-    row: usize,
-    held: &[f64],
-    setup: &Setup<'_>,
-    layout: Layout,
-    values: &[f64],
-) -> Vec<f64> {
-    let mut commands = held.to_vec();
-    let t = recording.times()[row];
-    for (input, own) in commands.chunks_exact_mut(NUMBERS).enumerate() {
-        let late = delay(input, setup, layout, values);
-        if let Some([value, slope]) = recording.of_output(input, t, late) {
-            own.copy_from_slice(&[t, value, slope, 0.0, 0.0]);
-        }
-    }
-    commands
+/// What outputs that are read at a row react to.
+pub(crate) struct Reading {
+    /// The inputs: those of the motion, or as [`Recording::of_output`].
+    pub(crate) held: Vec<f64>,
+    /// Each input that lags, with the derivative by its time constant, where it is not that of the motion; none where it
+    /// is.
+    pub(crate) lags: Vec<[f64; 2]>,
+    averaging: Option<Averaging>,
 }
 
 /// The time over which the outputs of a row are means.
-pub(crate) struct Averaging {
+struct Averaging {
     /// Its length in s.
-    pub(crate) duration: f64,
-    /// Changes of the inputs in it, as [`Recording::kinks_of_output`]; those that act by a lag make no kink.
-    pub(crate) kinks: Vec<f64>,
+    duration: f64,
+    /// Changes of the inputs in it, as [`Recording::kinks_of_output`].
+    kinks: Vec<f64>,
 }
 
-impl Averaging {
-    /// That of a row; `None` if outputs are readings.
+impl Reading {
     pub(crate) fn of(
         recording: &Recording,
         row: usize,
+        held: &[f64],
         setup: &Setup<'_>,
         layout: Layout,
         values: &[f64],
-    ) -> Option<Self> {
+    ) -> Self {
         let t = recording.times()[row];
-        let duration = recording.duration_of_output(t)?;
-        let of_input = |input: usize| {
-            if setup.lagging.contains(&input) {
-                return 0.0;
+        let late = |input: usize| {
+            let delay = place(&setup.delayed, input);
+            let lag = place(&setup.lagging, input);
+            Late {
+                delay: delay.map_or(0.0, |index| values[layout.input_delay(index)]),
+                lag: lag.map_or(0.0, |index| values[layout.lag(index)]),
             }
-            recording.kinks_of_output(input, t, delay(input, setup, layout, values))
         };
-        let kinks = (0..recording.input_len()).map(of_input).collect();
-        Some(Self { duration, kinks })
+        let mut commands = held.to_vec();
+        for (input, own) in commands.chunks_exact_mut(NUMBERS).enumerate() {
+            if let Some([value, slope]) = recording.of_output(input, t, late(input).delay) {
+                own.copy_from_slice(&[t, value, slope, 0.0, 0.0]);
+            }
+        }
+        let lags = setup.lagging.iter();
+        let lags = lags.map(|&input| recording.of_lagged_output(input, t, late(input)));
+        let averaging = recording.duration_of_output(t).map(|duration| {
+            let inputs = 0..recording.input_len();
+            let kinks = inputs.map(|input| recording.kinks_of_output(input, t, late(input)));
+            Averaging {
+                duration,
+                kinks: kinks.collect(),
+            }
+        });
+        Self {
+            held: commands,
+            lags: lags.collect::<Option<_>>().unwrap_or_default(),
+            averaging,
+        }
+    }
+
+    /// The duration of outputs that are means, and the kinks of their inputs.
+    pub(crate) fn averaging(&self) -> Option<(f64, &[f64])> {
+        let averaging = self.averaging.as_ref()?;
+        Some((averaging.duration, &averaging.kinks))
     }
 }
 
-/// The delay of an input.
-fn delay(input: usize, setup: &Setup<'_>, layout: Layout, values: &[f64]) -> f64 {
-    let mut delayed = setup.delayed.iter();
-    let place = delayed.position(|&delayed| delayed == input);
-    place.map_or(0.0, |index| values[layout.input_delay(index)])
+fn place(inputs: &[usize], input: usize) -> Option<usize> {
+    inputs.iter().position(|own| *own == input)
 }

@@ -8,7 +8,7 @@
 use appell_runtime::model::{At, Gradient, Model, ModelInfo};
 use appell_runtime::signal::{Signal, SignalError};
 
-use super::command::{self, Averaging};
+use super::command::{self, Reading};
 use super::sensors::Filter;
 use crate::data::layout::Layout;
 use crate::data::setup::Setup;
@@ -428,24 +428,28 @@ impl<'a> Plant<'a> {
         appell_runtime::dense::lu_solve_in_place(mass, columns, self.speeds);
     }
 
-    /// The mean state over the time of an output that is a mean: rates have kinks where inputs change, and
-    /// x̄ = x + ẍ h²/24 where they do not.
-    pub(crate) fn mean_state(
+    /// The state to which outputs react: the mean over their time if they are means, as rates have kinks where inputs
+    /// change, and x̄ = x + ẍ h²/24 where they do not.
+    pub(crate) fn read_state(
         &self,
         place: Place<'_>,
         scratch: &mut Scratch,
-        averaging: Option<&Averaging>,
+        reading: &Reading,
     ) -> Vec<f64> {
         let mut z = place.z.to_vec();
-        let Some(Averaging { duration, kinks }) = averaging else {
+        let (n, m) = (self.info().state_len(), self.m);
+        for (lag, [value, _]) in z[n..].iter_mut().zip(&reading.lags) {
+            *lag = *value;
+        }
+        let Some((duration, kinks)) = reading.averaging() else {
             return z;
         };
-        let (n, m) = (self.info().state_len(), self.m);
         let Scratch { u, p, a, b, .. } = scratch;
-        self.view(place, u, p);
+        let own = Place { z: &z, ..place };
+        self.view(own, u, p);
         let (a, b) = (&mut a[..n * n], &mut b[..n * m]);
         let mut rates = vec![0.0; n];
-        self.model.jacobians(at(place, n, u, p), &mut rates, a, b);
+        self.model.jacobians(at(own, n, u, p), &mut rates, a, b);
         let square = duration * duration / 24.0;
         for (state, z) in z[..n].iter_mut().enumerate() {
             let by_states = &a[state * n..(state + 1) * n];

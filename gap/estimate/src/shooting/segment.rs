@@ -11,7 +11,7 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::{add_scaled, dot, multiply};
 use crate::motion::closure::Closure;
-use crate::motion::command::{self, Averaging, Switch};
+use crate::motion::command::{self, Reading, Switch};
 use crate::motion::plant::{Place, Plant, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, decays, is_uneven, within};
@@ -240,14 +240,21 @@ impl<'a> SegmentIntegrator<'a> {
             0
         };
         let (mut outputs, mut slopes) = (vec![0.0; count], vec![0.0; count * n]);
-        let held = command::of_reading(self.recording, row, &self.held, setup, layout, self.values);
-        let place = Place::new(layout, self.values, t, &self.z, &held);
+        let read = Reading::of(self.recording, row, &self.held, setup, layout, self.values);
+        let place = Place::new(layout, self.values, t, &self.z, &read.held);
         if count > 0 {
             let (plant, scratch) = (self.estimation.plant(self.run), &mut self.scratch);
-            let averaging = Averaging::of(self.recording, row, setup, layout, self.values);
-            let z = plant.mean_state(place, scratch, averaging.as_ref());
+            let z = plant.read_state(place, scratch, &read);
             let place = Place { z: &z, ..place };
             plant.outputs(place, scratch, &mut outputs, &mut slopes);
+        }
+        // Inputs that lag are not those of the motion.
+        let first = setup.model.info().state_len();
+        let mut by_lags = Vec::new();
+        for slopes in slopes.chunks_exact_mut(n) {
+            for (slope, [_, by]) in slopes[first..].iter_mut().zip(&read.lags) {
+                by_lags.push(std::mem::take(slope) * by);
+            }
         }
         for (index, channel) in setup.channels.iter().enumerate() {
             let measured = self.recording.measured(row)[index];
@@ -293,6 +300,12 @@ impl<'a> SegmentIntegrator<'a> {
                         Unknown::Parameter(parameter) if !by_parameters.is_empty() => {
                             scale * by_parameters[parameter]
                         }
+                        Unknown::Lag(lag) if lag < read.lags.len() => match setup.reads(index) {
+                            Measured::Output(output) => {
+                                scale * by_lags[output * read.lags.len() + lag]
+                            }
+                            Measured::State(_) => 0.0,
+                        },
                         _ => 0.0,
                     };
             }

@@ -2,7 +2,7 @@
 //! gap.
 //!
 //! ```text
-//!          --split--> training runs | held-out runs, which only the last step reads
+//!          --split--> training runs | held-out runs, which no fit reads
 //!          --effects--> candidates: every effect at every site, derived at once with sizes of zero
 //!          --reading--> torques of robots: means about their rows, or readings at them
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
@@ -14,6 +14,7 @@
 //!          --horizon--> validation by simulations over windows; if it fails, these rank the hypotheses
 //!          --outside--> windows that no hypothesis predicts are cut, and the steps above repeated
 //!          --coloured--> one-step predictions with process noise that has memory
+//!          --materiality--> members that close nothing on held-out runs are no members
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> nonparametric laws for the residual of the best hypothesis
 //!          --localise, windows, outside--> equations, windows of time, regions, events that no hypothesis predicts
@@ -65,6 +66,7 @@ mod initial;
 mod instead;
 mod law;
 mod localise;
+mod materiality;
 mod nominal;
 mod nuisance;
 mod options;
@@ -118,7 +120,7 @@ use screen::Screen;
 
 /// Version of the engine. Every change that affects a number of some report increments it, so that scores and
 /// calibration can state the version to which they belong.
-pub const ENGINE: u32 = 24;
+pub const ENGINE: u32 = 25;
 
 /// Largest number of rows and of measured values in a fit: with more, statistical errors are far below modelling errors.
 const MOST_ROWS: usize = 4000;
@@ -209,6 +211,9 @@ fn by_filter(
     } = judged;
     stage("measuring the residual force");
     let test = set.only(Part::Test);
+    let held_out = HeldOut::of(&test, &bench)?;
+    // Hypotheses whose predictions diverge keep their members.
+    let _ = comparison.without_immaterial(&bench, &held_out, options);
     // A law that cannot be written is listed as failed; the diagnosis continues.
     let (laws, unwritten) = match law::lawful(&bench, &comparison) {
         Ok(laws) => (laws, None),
@@ -230,7 +235,6 @@ fn by_filter(
     // Without a result if the filter diverges with the other interpolation.
     report.interpolated =
         assumptions::interpolated(&bench, comparison.best(), fitted).unwrap_or_default();
-    let held_out = HeldOut::of(&test, &bench)?;
     let before = before.map(|set| HeldOut::of(&set.all(Part::Test), &bench));
     let before = before.transpose()?;
     let measured = report.measured(measured)?;

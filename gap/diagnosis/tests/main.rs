@@ -12,5 +12,6 @@ mod differences;
 mod engine;
 mod events;
 mod fuzz;
+mod materiality;
 mod shared;
 mod signs;

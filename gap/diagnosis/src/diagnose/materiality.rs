@@ -18,8 +18,8 @@ const DECISIVE: f64 = 20.0;
 const DOUBT: f64 = 0.05;
 
 impl Comparison {
-    /// Lets the same hypothesis without a member lead, as long as that member closes no material share of the errors on
-    /// held-out runs.
+    /// Lets the same hypothesis without a member lead, as long as that member closes no material share of the gap that
+    /// re-fitted parameters leave on held-out runs.
     pub(super) fn without_immaterial(
         &mut self,
         bench: &Bench<'_>,
@@ -36,12 +36,16 @@ impl Comparison {
         while let Some(fewer) = self.with_fewer(bench) {
             let floor = prediction::floor(&runs.recordings, bench, self.best(), &noise, horizon)?;
             let stated = stated(bench, self.nominal())?;
-            let fits = [&stated, self.best(), &self.fits[fewer].0];
-            let errors = fits.map(|own| runs.errors(bench, own, &noise, horizon));
-            let [stated, best, without] = errors;
-            let paired = Paired::of(&[&stated?, &best?, &without?]);
-            let share = |means: &[f64]| (means[2] - means[1]) / (means[0] - floor * floor);
-            if paired.interval95(share)[1] >= tolerance {
+            let errors = |own| runs.errors(bench, own, &noise, horizon);
+            let [stated, refitted] = [errors(&stated)?, errors(self.nominal())?];
+            let [with, without] = [errors(self.best())?, errors(&self.fits[fewer].0)?];
+            let paired = Paired::of(&[&stated, &refitted, &with, &without]);
+            let share = |means: &[f64]| {
+                let gap = means[0].min(means[1]) - floor * floor;
+                (means[3] - means[2]) / gap.max(0.0)
+            };
+            let [_, most] = paired.interval95(share);
+            if most.is_nan() || most >= tolerance {
                 break;
             }
             self.lead(fewer);

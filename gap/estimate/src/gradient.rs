@@ -3,6 +3,7 @@
 //! | file | idea |
 //! |---|---|
 //! | `adjoint.rs` | the gradient with respect to all values, by one reverse sweep over the tape |
+//! | `direction.rs` | directions of differentiation |
 //! | `information.rs` | Fisher information in few passes |
 //! | `kept.rs` | gradient and information of the means from one pass |
 //! | `levels.rs` | that of levels, in one pass |
@@ -10,6 +11,7 @@
 //! | `tangent.rs` | directional derivatives of innovations, in one pass |
 
 pub(crate) mod adjoint;
+pub(crate) mod direction;
 pub(crate) mod information;
 pub(crate) mod kept;
 mod levels;

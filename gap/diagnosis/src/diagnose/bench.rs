@@ -1,6 +1,8 @@
 //! The estimation problem common to all hypotheses: recordings, the model with all candidates, the free
 //! parameters of each hypothesis, and the initial values of a search.
 
+mod fits;
+
 use appell_estimate::{
     Coordinate, Effort, EstimateError, Estimation, Fit, Free, Layout, Measured, Recording, Setup,
     Unknown,
@@ -8,8 +10,8 @@ use appell_estimate::{
 use appell_runtime::model::Model;
 
 use super::DiagnoseError;
-use super::evidence::{Evidence, Fitted};
-use super::feedback::{InputInnovations, for_kicks};
+use super::evidence::Fitted;
+use super::feedback::InputInnovations;
 use super::hardware::Hardware;
 use super::imperfection::{Imperfection, perfect};
 use super::start_levels::{level, sizes};
@@ -441,137 +443,6 @@ impl<'a> Bench<'a> {
             }
         }
         plain
-    }
-
-    /// Fits a hypothesis from initial values.
-    pub(super) fn fit(
-        &self,
-        members: &[usize],
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by(Fit::quick, self.effort(), members, estimation, start)
-    }
-
-    /// The same; given up where it stays far below a log posterior.
-    pub(super) fn fit_above(
-        &self,
-        floor: f64,
-        members: &[usize],
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
-        let effort = Effort {
-            floor,
-            ..self.effort()
-        };
-        self.fit_by(Fit::quick, effort, members, estimation, start)
-    }
-
-    /// The same to a twentieth of a standard deviation, for values that are reported alone.
-    pub(super) fn fit_finely(
-        &self,
-        members: &[usize],
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
-        let effort = Effort {
-            gain: FINELY * self.effort().gain,
-            ..self.effort()
-        };
-        self.fit_by(Fit::quick, effort, members, estimation, start)
-    }
-
-    /// Fits some values.
-    pub(super) fn fit_free(
-        &self,
-        estimation: &Estimation<'_>,
-        start: &[f64],
-        free: &[Free],
-    ) -> Result<Fit, DiagnoseError> {
-        self.weighed(estimation, start, free, Fit::quick, self.effort())
-    }
-
-    /// Fits a hypothesis with the accuracy that shares of a gap need.
-    pub(super) fn fit_roughly(
-        &self,
-        members: &[usize],
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by(Fit::quick, SHARES, members, estimation, start)
-    }
-
-    pub(super) fn effort(&self) -> Effort {
-        if self.is_over_windows() {
-            COARSE
-        } else {
-            EFFORT
-        }
-    }
-
-    pub(super) fn fit_by(
-        &self,
-        search: Search,
-        effort: Effort,
-        members: &[usize],
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
-        let free = self.free(members, estimation.setup());
-        let fit = if self.is_over_windows() && self.is_late(members) {
-            // With the delay the states at the beginnings of the windows change.
-            let mut start = start.to_vec();
-            self.begin_later(estimation, &mut start)?;
-            start = self
-                .weighed(estimation, &start, &free, search, effort)?
-                .values;
-            self.begin_later(estimation, &mut start)?;
-            self.weighed(estimation, &start, &free, search, effort)?
-        } else {
-            self.weighed(estimation, start, &free, search, effort)?
-        };
-        let by_inputs = for_kicks(&self.input_innovations, self.weight, estimation, &fit)?;
-        let evidence = Evidence::of(self, members, &fit, by_inputs);
-        Ok(Fitted {
-            members: members.to_vec(),
-            layout: estimation.layout(),
-            fit,
-            evidence,
-            coloured: 0.0,
-        })
-    }
-}
-
-impl Bench<'_> {
-    /// A fit with weighted rows: the objective is divided by the weight, so that the prior is scaled instead.
-    pub(super) fn weighed(
-        &self,
-        estimation: &Estimation<'_>,
-        start: &[f64],
-        free: &[Free],
-        search: Search,
-        effort: Effort,
-    ) -> Result<Fit, DiagnoseError> {
-        let firm = free.iter().map(|one| Free {
-            prior: (one.prior).map(|[value, deviation]| [value, deviation * self.weight.sqrt()]),
-            ..*one
-        });
-        let effort = Effort {
-            gain: effort.gain / self.weight,
-            floor: effort.floor / self.weight,
-            ..effort
-        };
-        let fit = search(estimation, start, &firm.collect::<Vec<_>>(), effort)?;
-        Ok(Fit {
-            free: free.to_vec(),
-            log_likelihood: self.weight * fit.log_likelihood,
-            log_posterior: self.weight * fit.log_posterior,
-            information: self.weight * fit.information,
-            curvature: self.weight * fit.curvature,
-            gain: self.weight * fit.gain,
-            ..fit
-        })
     }
 }
 

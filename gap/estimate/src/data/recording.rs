@@ -5,6 +5,7 @@ use std::ops::Range;
 use appell_runtime::Signal;
 use appell_runtime::model::{Interpolation, SignalTable};
 
+use super::held::Held;
 use crate::EstimateError;
 
 /// One uninterrupted recording, in SI.
@@ -22,7 +23,7 @@ pub struct Recording {
     /// Second derivatives at the rows of each input that is a spline, nothing for others.
     curvatures: Vec<Vec<f64>>,
     /// Inputs before its first row, held from row to row: delayed ones arrive later.
-    earlier: Earlier,
+    earlier: Held,
     /// If rows were left out: each input from row to row as the first two coefficients of [`Recording::polynomial`].
     lines: Vec<[f64; 2]>,
     /// The inputs of outputs at their full rate, and whether outputs are means over the interval about their row.
@@ -46,101 +47,6 @@ pub(crate) enum Row {
     Own(usize),
     /// Before it.
     Earlier(usize),
-}
-
-/// Inputs before a recording, row by row.
-#[derive(Debug, Clone, Default, PartialEq)]
-struct Earlier {
-    times: Vec<f64>,
-    inputs: Vec<f64>,
-}
-
-/// Inputs at their full rate, held from each time to the next, of a recording that may have a part of these rows.
-#[derive(Debug, Clone, PartialEq)]
-struct Held {
-    times: Vec<f64>,
-    /// Row by row.
-    inputs: Vec<f64>,
-    /// Number of inputs.
-    count: usize,
-}
-
-/// Time constants after which a lag has forgotten its input.
-const FORGOTTEN: f64 = 40.0;
-
-impl Held {
-    /// From half a row before the time of a row to half a row after it.
-    fn about(&self, t: f64) -> [f64; 2] {
-        let row = self.times.partition_point(|own| *own < t);
-        let before = row.checked_sub(1).map(|row| t - self.times[row]);
-        let after = self.times.get(row + 1).map(|next| next - t);
-        let [before, after] = [before.or(after), after.or(before)].map(Option::unwrap_or_default);
-        [t - 0.5 * before, t + 0.5 * after]
-    }
-
-    /// An input at a time; before the first row that of the first.
-    fn held_at(&self, input: usize, t: f64) -> f64 {
-        let rows = self.times.partition_point(|own| *own <= t);
-        self.inputs[rows.saturating_sub(1) * self.count + input]
-    }
-
-    /// Its mean from one time to another.
-    fn mean_between(&self, input: usize, ends: [f64; 2]) -> f64 {
-        self.moments(input, ends)[0] / (ends[1] - ends[0])
-    }
-
-    /// Its integral from one time to another, and that of its product with the time since their middle.
-    fn moments(&self, input: usize, [from, to]: [f64; 2]) -> [f64; 2] {
-        let rows = self.times.partition_point(|t| *t <= from)..;
-        let ends = self.times[rows].iter().copied();
-        let middle = 0.5 * (from + to);
-        let (mut moments, mut begin) = ([0.0; 2], from);
-        for end in ends.take_while(|end| *end < to).chain([to]) {
-            let area = (end - begin) * self.held_at(input, begin);
-            moments[0] += area;
-            moments[1] += area * (0.5 * (begin + end) - middle);
-            begin = end;
-        }
-        moments
-    }
-
-    /// Its changes from one time to another, times half the squares of the times from them to the end on their side of a
-    /// time between, divided by the whole time: the mean of its integral less the value of that at the time between.
-    fn kinks(&self, input: usize, [from, to]: [f64; 2], t: f64) -> f64 {
-        let first = self.times.partition_point(|own| *own <= from).max(1);
-        let rows = (first..self.times.len()).take_while(|&row| self.times[row] < to);
-        let of_row = |row: usize| {
-            let own = self.times[row];
-            let reach = if own >= t { to - own } else { own - from };
-            let [before, after] = [row - 1, row].map(|row| self.inputs[row * self.count + input]);
-            0.5 * (after - before) * reach * reach
-        };
-        rows.map(of_row).sum::<f64>() / (to - from)
-    }
-
-    /// An input that lags, at a time, and its derivative by the time constant. It was at rest long before.
-    fn lagged_at(&self, input: usize, t: f64, time_constant: f64) -> [f64; 2] {
-        let past = t - FORGOTTEN * time_constant;
-        let (mut begin, mut lagged, mut slope) = (past, self.held_at(input, past), 0.0);
-        let rows = self.times.partition_point(|own| *own <= past)..;
-        let ends = self.times[rows].iter().copied();
-        for end in ends.take_while(|end| *end < t).chain([t]) {
-            let (held, times) = (self.held_at(input, begin), (end - begin) / time_constant);
-            let ahead = lagged - held;
-            let decay = (-times).exp();
-            slope = decay * (slope + ahead * times / time_constant);
-            (lagged, begin) = (held + decay * ahead, end);
-        }
-        [lagged, slope]
-    }
-
-    /// The line with the same moments: its value at the beginning and its slope.
-    fn line(&self, input: usize, ends: [f64; 2]) -> [f64; 2] {
-        let length = ends[1] - ends[0];
-        let [integral, first] = self.moments(input, ends);
-        let slope = 12.0 * first / length.powi(3);
-        [integral / length - 0.5 * slope * length, slope]
-    }
 }
 
 impl Recording {
@@ -196,7 +102,7 @@ impl Recording {
             measurements,
             interpolation: vec![Interpolation::Hold; columns[0]],
             curvatures: vec![Vec::new(); columns[0]],
-            earlier: Earlier::default(),
+            earlier: Held::none(columns[0]),
             lines: Vec::new(),
             of_outputs: None,
             differences: Vec::new(),
@@ -354,42 +260,25 @@ impl Recording {
     pub(crate) fn command(&self, row: Row, input: usize) -> [f64; 4] {
         match row {
             Row::Own(row) => self.polynomial(row, input),
-            Row::Earlier(row) => [
-                self.earlier.inputs[row * self.columns[0] + input],
-                0.0,
-                0.0,
-                0.0,
-            ],
+            Row::Earlier(row) => [self.earlier.at(row, input), 0.0, 0.0, 0.0],
         }
     }
 
     /// An input at a time that may be before the first row; then the first known value if it is before all others.
     pub(crate) fn input_before(&self, input: usize, t: f64) -> f64 {
-        let rows = self.earlier.times.partition_point(|earlier| *earlier <= t);
-        match rows.checked_sub(1) {
-            _ if t >= self.times[0] => self.inputs(0)[input],
-            None if self.earlier_len() == 0 => self.inputs(0)[input],
-            row => self.command(Row::Earlier(row.unwrap_or(0)), input)[0],
+        if t >= self.times[0] || self.earlier_len() == 0 {
+            return self.inputs(0)[input];
         }
+        self.earlier.held_at(input, t)
     }
 
-    /// By how much an input that lags is ahead of its first row there, and the derivative of that by its time constant:
-    /// the inputs before that row, held from row to row, after a rest.
+    /// By how much an input that lags is ahead of its first row there, and the derivative of that by its time constant.
     pub(crate) fn lag_before(&self, input: usize, time_constant: f64) -> [f64; 2] {
-        let now = self.inputs(0)[input];
-        let values = self.earlier.inputs.iter().skip(input);
-        let mut values = values.step_by(self.columns[0]).copied();
-        let (mut lagged, mut slope) = (values.next().unwrap_or(now), 0.0);
-        let mut held = lagged;
-        let ends = self.earlier.times.iter().skip(1).chain(&self.times[..1]);
-        for (from, to) in self.earlier.times.iter().zip(ends) {
-            let times = (to - from) / time_constant;
-            let decay = (-times).exp();
-            slope = decay * (slope + (lagged - held) * times / time_constant);
-            lagged = held + decay * (lagged - held);
-            held = values.next().unwrap_or(held);
+        if self.earlier_len() == 0 {
+            return [0.0; 2];
         }
-        [lagged - now, slope]
+        let [lagged, slope] = self.earlier.lagged_at(input, self.times[0], time_constant);
+        [lagged - self.inputs(0)[input], slope]
     }
 
     /// Times in s.
@@ -486,7 +375,7 @@ impl Recording {
             curvatures: (self.curvatures.iter())
                 .map(|own| own.get(rows.clone()).unwrap_or_default().to_vec())
                 .collect(),
-            earlier: Earlier::default(),
+            earlier: Held::none(inputs),
             lines: (self.lines.get(rows.start * inputs..rows.end * inputs))
                 .unwrap_or_default()
                 .to_vec(),

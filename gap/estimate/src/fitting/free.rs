@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::EstimateError;
 use crate::data::layout::Layout;
 use crate::data::unknown::Unknown;
-use crate::gradient::tangent::Direction;
+use crate::gradient::direction::Direction;
 
 /// Coordinate in which a value is estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

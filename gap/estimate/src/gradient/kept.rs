@@ -3,7 +3,8 @@
 use nalgebra::{DMatrix, DMatrixView};
 
 use super::adjoint::adjoint;
-use super::tangent::{Direction, Forward};
+use super::direction::Direction;
+use super::tangent::Forward;
 use crate::EstimateError;
 use crate::estimation::Estimation;
 use crate::kalman::filter::Pass;

@@ -11,15 +11,16 @@
 
 use std::f64::consts::TAU;
 
-use super::square_root::{potter, triangularise};
-use super::tape::{Record, Sample, SampleTape, Sizes, StepTape};
+use super::process_noise::{directions, disturbed};
+use super::square_root::potter;
+use super::tape::{Record, Sample, SampleTape, Sizes};
 use crate::EstimateError;
 use crate::data::recording::Recording;
-use crate::data::setup::{Disturbance, Measured, Setup};
+use crate::data::setup::Measured;
 use crate::matrix::{add_scaled, dot, multiply, pieces, scale, transposed_multiply};
 use crate::motion::closure::Closure;
-use crate::motion::command::{self, Reading as OfOutputs, Switch};
-use crate::motion::plant::{Place, Plant, Scratch, StateSpace};
+use crate::motion::command::{self, OfOutputs, Switch};
+use crate::motion::plant::{Place, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, Span, step, within};
 
@@ -549,61 +550,5 @@ impl<'a> Pass<'a> {
             tape,
         });
         Ok(())
-    }
-}
-
-/// The root of P⁺ = F (P + N) Fᵀ + N; `noise` are the roots of N along the disturbances.
-fn disturbed(
-    on: &StepTape<'_>,
-    [n, d]: [usize; 2],
-    noise: impl Fn(usize) -> f64,
-    [spread, wide]: [&mut [f64]; 2],
-    root: &mut [f64],
-) {
-    // [S, N½], then [F S, F N½, N½].
-    let [joint, moved] = pieces(spread, [n * (n + d), n * (n + d)]);
-    for (i, joint) in joint.chunks_exact_mut(n + d).enumerate() {
-        joint[..n].copy_from_slice(&on.root[i * n..(i + 1) * n]);
-        for j in 0..d {
-            joint[n + j] = noise(j) * on.columns[i * d + j];
-        }
-    }
-    multiply(on.f, joint, n, moved);
-    let rows = wide.chunks_exact_mut(n + 2 * d);
-    let parts = moved.chunks_exact(n + d).zip(joint.chunks_exact(n + d));
-    for (wide, (moved, joint)) in rows.zip(parts) {
-        wide[..n + d].copy_from_slice(moved);
-        wide[n + d..].copy_from_slice(&joint[n..]);
-    }
-    triangularise(wide, n, root);
-}
-
-/// Columns along which the disturbances act on ż: n rows, a column each.
-fn directions(
-    setup: &Setup<'_>,
-    plant: &Plant<'_>,
-    place: Place<'_>,
-    scratch: &mut Scratch,
-    columns: &mut [f64],
-) {
-    let (d, s) = (setup.disturbances.len(), plant.speeds);
-    columns.fill(0.0);
-    let mut forces = false;
-    for (j, disturbance) in setup.disturbances.iter().enumerate() {
-        match *disturbance {
-            Disturbance::Force(speed) => {
-                columns[speed * d + j] = 1.0;
-                forces = true;
-            }
-            Disturbance::Rate(_) => {}
-        }
-    }
-    if forces {
-        plant.accelerations(place, scratch, &mut columns[..s * d]);
-    }
-    for (j, disturbance) in setup.disturbances.iter().enumerate() {
-        if let Disturbance::Rate(state) = *disturbance {
-            columns[state * d + j] = 1.0;
-        }
     }
 }

@@ -8,7 +8,7 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::add_scaled;
 use crate::motion::closure::Closure;
-use crate::motion::command::{Reading, Switch};
+use crate::motion::command::{OfOutputs, Switch};
 use crate::motion::plant::{Place, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, decays, is_uneven, within};
@@ -227,7 +227,7 @@ impl<'a> Walk<'a> {
                         let t = self.recording.times()[row] - only.map_or(0.0, delay);
                         let StateSpace { setup, layout, .. } = self.system;
                         let (recording, held) = (self.recording, &self.held);
-                        let read = Reading::of(recording, row, held, setup, layout, self.values);
+                        let read = OfOutputs::of(recording, row, held, setup, layout, self.values);
                         let place = Place::new(layout, self.values, t, &self.z, &read.held);
                         let (plant, scratch) = (self.system.plant, &mut self.scratch);
                         let z = plant.read_state(place, scratch, &read);

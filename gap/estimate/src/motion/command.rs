@@ -85,7 +85,7 @@ impl Switch {
 }
 
 /// What outputs that are read at a row react to.
-pub(crate) struct Reading {
+pub(crate) struct OfOutputs {
     /// The inputs: those of the motion, or as [`Recording::of_output`].
     pub(crate) held: Vec<f64>,
     /// Each input that lags, with the derivative by its time constant, where it is not that of the motion; none where it
@@ -102,7 +102,7 @@ struct Averaging {
     kinks: Vec<f64>,
 }
 
-impl Reading {
+impl OfOutputs {
     pub(crate) fn of(
         recording: &Recording,
         row: usize,

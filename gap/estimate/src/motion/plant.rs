@@ -8,7 +8,7 @@
 use appell_runtime::model::{At, Gradient, Model, ModelInfo};
 use appell_runtime::signal::{Signal, SignalError};
 
-use super::command::{self, Reading};
+use super::command::{self, OfOutputs};
 use super::sensors::Filter;
 use crate::data::layout::Layout;
 use crate::data::setup::Setup;
@@ -434,7 +434,7 @@ impl<'a> Plant<'a> {
         &self,
         place: Place<'_>,
         scratch: &mut Scratch,
-        reading: &Reading,
+        reading: &OfOutputs,
     ) -> Vec<f64> {
         let mut z = place.z.to_vec();
         let (n, m) = (self.info().state_len(), self.m);

@@ -11,7 +11,7 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::{add_scaled, dot, multiply};
 use crate::motion::closure::Closure;
-use crate::motion::command::{self, Reading, Switch};
+use crate::motion::command::{self, OfOutputs, Switch};
 use crate::motion::plant::{Place, Plant, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, decays, is_uneven, within};
@@ -240,7 +240,7 @@ impl<'a> SegmentIntegrator<'a> {
             0
         };
         let (mut outputs, mut slopes) = (vec![0.0; count], vec![0.0; count * n]);
-        let read = Reading::of(self.recording, row, &self.held, setup, layout, self.values);
+        let read = OfOutputs::of(self.recording, row, &self.held, setup, layout, self.values);
         let place = Place::new(layout, self.values, t, &self.z, &read.held);
         if count > 0 {
             let (plant, scratch) = (self.estimation.plant(self.run), &mut self.scratch);

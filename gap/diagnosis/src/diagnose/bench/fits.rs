@@ -1,0 +1,141 @@
+//! Fits of hypotheses.
+
+use appell_estimate::{Effort, Estimation, Fit, Free};
+
+use super::super::DiagnoseError;
+use super::super::evidence::{Evidence, Fitted};
+use super::super::feedback::for_kicks;
+use super::{Bench, COARSE, EFFORT, FINELY, SHARES, Search};
+
+impl Bench<'_> {
+    /// Fits a hypothesis from initial values.
+    pub(in super::super) fn fit(
+        &self,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        self.fit_by(Fit::quick, self.effort(), members, estimation, start)
+    }
+
+    /// The same; given up where it stays far below a log posterior.
+    pub(in super::super) fn fit_above(
+        &self,
+        floor: f64,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        let effort = Effort {
+            floor,
+            ..self.effort()
+        };
+        self.fit_by(Fit::quick, effort, members, estimation, start)
+    }
+
+    /// The same to a twentieth of a standard deviation, for values that are reported alone.
+    pub(in super::super) fn fit_finely(
+        &self,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        let effort = Effort {
+            gain: FINELY * self.effort().gain,
+            ..self.effort()
+        };
+        self.fit_by(Fit::quick, effort, members, estimation, start)
+    }
+
+    /// Fits some values.
+    pub(in super::super) fn fit_free(
+        &self,
+        estimation: &Estimation<'_>,
+        start: &[f64],
+        free: &[Free],
+    ) -> Result<Fit, DiagnoseError> {
+        self.weighed(estimation, start, free, Fit::quick, self.effort())
+    }
+
+    /// Fits a hypothesis with the accuracy that shares of a gap need.
+    pub(in super::super) fn fit_roughly(
+        &self,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        self.fit_by(Fit::quick, SHARES, members, estimation, start)
+    }
+
+    pub(in super::super) fn effort(&self) -> Effort {
+        if self.is_over_windows() {
+            COARSE
+        } else {
+            EFFORT
+        }
+    }
+
+    pub(in super::super) fn fit_by(
+        &self,
+        search: Search,
+        effort: Effort,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        let free = self.free(members, estimation.setup());
+        let fit = if self.is_over_windows() && self.is_late(members) {
+            // With the delay the states at the beginnings of the windows change.
+            let mut start = start.to_vec();
+            self.begin_later(estimation, &mut start)?;
+            start = self
+                .weighed(estimation, &start, &free, search, effort)?
+                .values;
+            self.begin_later(estimation, &mut start)?;
+            self.weighed(estimation, &start, &free, search, effort)?
+        } else {
+            self.weighed(estimation, start, &free, search, effort)?
+        };
+        let by_inputs = for_kicks(&self.input_innovations, self.weight, estimation, &fit)?;
+        let evidence = Evidence::of(self, members, &fit, by_inputs);
+        Ok(Fitted {
+            members: members.to_vec(),
+            layout: estimation.layout(),
+            fit,
+            evidence,
+            coloured: 0.0,
+        })
+    }
+}
+
+impl Bench<'_> {
+    /// A fit with weighted rows: the objective is divided by the weight, so that the prior is scaled instead.
+    pub(in super::super) fn weighed(
+        &self,
+        estimation: &Estimation<'_>,
+        start: &[f64],
+        free: &[Free],
+        search: Search,
+        effort: Effort,
+    ) -> Result<Fit, DiagnoseError> {
+        let firm = free.iter().map(|one| Free {
+            prior: (one.prior).map(|[value, deviation]| [value, deviation * self.weight.sqrt()]),
+            ..*one
+        });
+        let effort = Effort {
+            gain: effort.gain / self.weight,
+            floor: effort.floor / self.weight,
+            ..effort
+        };
+        let fit = search(estimation, start, &firm.collect::<Vec<_>>(), effort)?;
+        Ok(Fit {
+            free: free.to_vec(),
+            log_likelihood: self.weight * fit.log_likelihood,
+            log_posterior: self.weight * fit.log_posterior,
+            information: self.weight * fit.information,
+            curvature: self.weight * fit.curvature,
+            gain: self.weight * fit.gain,
+            ..fit
+        })
+    }
+}

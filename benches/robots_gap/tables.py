@@ -100,9 +100,11 @@ def block(about, found, peers):
     """The block of docs/performance.md."""
     begin, end = marks(about["folder"])
     text = [begin, "",
-            f"One run of `{about['command']}` on {about['date']}, commit {about['commit']}. MuJoCo {about['mujoco']}.",
-            "`mujoco.sysid` fits all armatures, dampings, dry frictions, masses, gains and one delay; it names no cause: it",
-            "counts as right where the true cause moved most.", ""]
+            f"One run of `{about['command']}` on {about['date']}, commit {about['commit']}. MuJoCo {about['mujoco']}."]
+    if peers:
+        text += ["`mujoco.sysid` fits all armatures, dampings, dry frictions, masses, gains and one delay; it names no cause: it",
+                 "counts as right where the true cause moved most."]
+    text.append("")
     return "\n".join([*text, *summary(found, peers), "", *rows(found, peers), "", end])
 
 

@@ -308,7 +308,8 @@ impl<'a> Pass<'a> {
             let layout = self.system.layout;
             let noise = |j| self.values[layout.disturbance(j)] * (0.5 * h).sqrt();
             let roots = [&mut self.spread[..], &mut self.wide[..]];
-            disturbed(&on, [n, d], noise, roots, &mut self.root);
+            let step = [&*on.f, on.root, on.columns];
+            disturbed(step, [n, d], noise, roots, &mut self.root);
         } else {
             multiply(on.f, on.root, n, &mut self.root);
         }

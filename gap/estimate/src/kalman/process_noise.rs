@@ -1,14 +1,14 @@
 //! How disturbances enter the covariance of a step.
 
 use super::square_root::triangularise;
-use super::tape::StepTape;
 use crate::data::setup::{Disturbance, Setup};
 use crate::matrix::{multiply, pieces};
 use crate::motion::plant::{Place, Plant, Scratch};
 
-/// The root of P⁺ = F (P + N) Fᵀ + N; `noise` are the roots of N along the disturbances.
+/// The root of P⁺ = F (P + N) Fᵀ + N, from F, the root of P and the columns of the disturbances; `noise` are the roots of N
+/// along these.
 pub(super) fn disturbed(
-    on: &StepTape<'_>,
+    [f, before, columns]: [&[f64]; 3],
     [n, d]: [usize; 2],
     noise: impl Fn(usize) -> f64,
     [spread, wide]: [&mut [f64]; 2],
@@ -17,12 +17,12 @@ pub(super) fn disturbed(
     // [S, N½], then [F S, F N½, N½].
     let [joint, moved] = pieces(spread, [n * (n + d), n * (n + d)]);
     for (i, joint) in joint.chunks_exact_mut(n + d).enumerate() {
-        joint[..n].copy_from_slice(&on.root[i * n..(i + 1) * n]);
+        joint[..n].copy_from_slice(&before[i * n..(i + 1) * n]);
         for j in 0..d {
-            joint[n + j] = noise(j) * on.columns[i * d + j];
+            joint[n + j] = noise(j) * columns[i * d + j];
         }
     }
-    multiply(on.f, joint, n, moved);
+    multiply(f, joint, n, moved);
     let rows = wide.chunks_exact_mut(n + 2 * d);
     let parts = moved.chunks_exact(n + d).zip(joint.chunks_exact(n + d));
     for (wide, (moved, joint)) in rows.zip(parts) {

@@ -19,8 +19,7 @@ const DOUBT: f64 = 0.05;
 
 impl Comparison {
     /// Lets the same hypothesis without a member lead, as long as that member closes no material share of the gap that
-    /// re-fitted parameters leave on held-out runs. The servos of a robot hide
-    /// what members do to its motion.
+    /// re-fitted parameters leave on held-out runs; not for a robot, whose servos hide what a member does to the motion.
     pub(super) fn without_immaterial(
         &mut self,
         bench: &Bench<'_>,

@@ -187,6 +187,29 @@ fn it_is_exact_for_outputs_with_formulas() {
 }
 
 #[test]
+fn it_is_exact_for_outputs_that_read_an_input_that_lags() {
+    let model = shipped::complete_model("euc_2dof");
+    let power = Measured::Output(model.info().output_index("power").unwrap());
+    let mut setup = Setup::new(model, &[Measured::State(0), power]);
+    setup.longest_step = 0.005;
+    let drive = Drive::sines(40, 0.01, &[2.0]);
+    let unseen = [drive.unseen(2)];
+    let truth = noisy(&Estimation::new(&setup, &unseen).unwrap(), 0.05, 0.01);
+    let recording = record(&setup, &truth, &drive, &mut Random::of("power"));
+    let rows = 0..recording.times().len();
+    let times = [&[-0.03, -0.01], recording.times()].concat();
+    let own = rows.flat_map(|row| recording.inputs(row).to_vec());
+    let inputs = [1.0, -0.5].into_iter().chain(own).collect();
+    let recording = recording.after(&[-0.03, -0.01], &[1.0, -0.5]);
+    setup.lagging = vec![0];
+    let recordings = [recording.with_outputs(false, times, inputs)];
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let mut values = noisy(&estimation, 0.05, 0.01);
+    set(&mut values, &estimation.layout(), Unknown::Lag(0), 0.012);
+    assert_gradient(&estimation, &values, TOLERANCE);
+}
+
+#[test]
 fn it_is_exact_for_lags_and_delays() {
     let model = shipped("double_pendulum");
     let mut setup = Setup::new(model, &[Measured::State(2), Measured::State(3)]);

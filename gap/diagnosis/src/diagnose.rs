@@ -120,7 +120,7 @@ use screen::Screen;
 
 /// Version of the engine. Every change that affects a number of some report increments it, so that scores and
 /// calibration can state the version to which they belong.
-pub const ENGINE: u32 = 25;
+pub const ENGINE: u32 = 26;
 
 /// Largest number of rows and of measured values in a fit: with more, statistical errors are far below modelling errors.
 const MOST_ROWS: usize = 4000;

@@ -78,7 +78,7 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, gradient: &mut [f64]) {
             ..
         } => {
             let samples = &shared.samples[samples.clone()];
-            back.measure(samples, [held, lags], tape, gradient);
+            back.measure(samples, (held, lags), tape, gradient);
         }
         Record::Close { t, held, tape: at } => {
             let [z, root] = pieces(&mut tape[*at..], [n, n * n]);
@@ -272,7 +272,7 @@ impl Backward<'_, '_> {
     fn measure(
         &mut self,
         samples: &[Sample],
-        [held, lags]: [&[f64]; 2],
+        (held, lags): (&[f64], &[[f64; 2]]),
         tape: &mut [f64],
         gradient: &mut [f64],
     ) {
@@ -318,8 +318,12 @@ impl Backward<'_, '_> {
                 slopes[lagged.clone()].fill(0.0);
             }
             let motion = self.z[lagged.clone()].to_vec();
+            let mut read = prior;
+            for (own, [value, _]) in read[states..].iter_mut().zip(lags) {
+                *own = *value;
+            }
             let t = pass.time_of(&first.innovation);
-            let place = Place::new(pass.system.layout, pass.values, t, &prior, held);
+            let place = Place::new(pass.system.layout, pass.values, t, &read, held);
             let mut sums = Sums {
                 z: &mut self.z,
                 p: &mut self.parameters,
@@ -330,7 +334,7 @@ impl Backward<'_, '_> {
             let plant = pass.system.plant;
             plant.output_adjoint(place, &mut self.scratch, weights, &mut sums);
             // Inputs that lag are not those of the motion.
-            for ((sum, own), (lag, slope)) in
+            for ((sum, own), (lag, [_, slope])) in
                 (self.z[lagged].iter_mut().zip(motion)).zip(lags.iter().enumerate())
             {
                 gradient[pass.system.layout.lag(lag)] += (*sum - own) * slope;

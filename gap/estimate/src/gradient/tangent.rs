@@ -406,7 +406,7 @@ impl<'p, 'a> Forward<'p, 'a> {
     fn measure(&mut self, first: usize) {
         let (n, columns) = (self.pass.sizes.n, self.columns);
         // The inputs of outputs that were read are on record.
-        let (held, by_lags) = match self.pass.records.last() {
+        let (held, lags) = match self.pass.records.last() {
             Some(Record::Measure { held, lags, .. }) if !held.is_empty() => {
                 (held.clone(), lags.clone())
             }
@@ -416,7 +416,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         for index in first..self.pass.samples.len() {
             let sample = self.pass.samples[index];
             let channel = sample.innovation.channel;
-            let (by_states, by_parameters, by_inputs) = self.output_slope(index, &held);
+            let (by_states, by_parameters, by_inputs) = self.output_slope(index, &held, &lags);
             let t = self.pass.time_of(&sample.innovation);
             let SampleTape { c, a, z, .. } =
                 self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
@@ -450,9 +450,9 @@ impl<'p, 'a> Forward<'p, 'a> {
                         by_inputs[input] * command::slope(&held, input, t)
                     }
                     Direction::Value(Unknown::Lag(lag))
-                        if lag < by_lags.len() && !by_states.is_empty() =>
+                        if lag < lags.len() && !by_states.is_empty() =>
                     {
-                        -by_states[states + lag] * by_lags[lag]
+                        -by_states[states + lag] * lags[lag][1]
                     }
                     _ => 0.0,
                 };
@@ -477,7 +477,12 @@ impl<'p, 'a> Forward<'p, 'a> {
 
     /// Derivatives of an output that is read with respect to the states, the parameters and the declared inputs; none for
     /// a state.
-    fn output_slope(&mut self, index: usize, held: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    fn output_slope(
+        &mut self,
+        index: usize,
+        held: &[f64],
+        lags: &[[f64; 2]],
+    ) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let sample = self.pass.samples[index];
         let setup = self.estimation.setup();
         let channel = sample.innovation.channel;
@@ -496,13 +501,11 @@ impl<'p, 'a> Forward<'p, 'a> {
         );
         let mut by_inputs = vec![0.0; info.declared_inputs];
         let t = self.pass.time_of(&sample.innovation);
-        let place = Place::new(
-            self.pass.system.layout,
-            self.pass.values,
-            t,
-            &self.pass.z,
-            held,
-        );
+        let mut z = self.pass.z.clone();
+        for (own, [value, _]) in z[info.state_len()..].iter_mut().zip(lags) {
+            *own = *value;
+        }
+        let place = Place::new(self.pass.system.layout, self.pass.values, t, &z, held);
         let mut sums = Sums {
             z: &mut by.0,
             p: &mut by.1,

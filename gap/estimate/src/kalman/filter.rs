@@ -439,15 +439,14 @@ impl<'a> Pass<'a> {
         (0..channels.len()).filter(is_sampled).collect()
     }
 
-    /// Evaluates the outputs and their slopes if any is sampled; then returns their inputs, and the derivatives of those
-    /// that lag.
+    /// Evaluates the outputs and their slopes if any is sampled; then returns their inputs, and those that lag.
     fn linearise_outputs(
         &mut self,
         recording: &Recording,
         row: usize,
         t: f64,
         channels: &[usize],
-    ) -> (Vec<f64>, Vec<f64>) {
+    ) -> (Vec<f64>, Vec<[f64; 2]>) {
         let StateSpace {
             setup,
             plant,
@@ -466,8 +465,7 @@ impl<'a> Pass<'a> {
         for slopes in slopes.chunks_exact_mut(self.sizes.n) {
             slopes[first..][..read.lags.len()].fill(0.0);
         }
-        let by_lags = read.lags.iter().map(|[_, slope]| *slope);
-        (read.held, by_lags.collect())
+        (read.held, read.lags)
     }
 
     /// Records the state, the root of P and the output row before a scalar update. Returns the quantity without scale

@@ -24,8 +24,8 @@ pub(crate) enum Record {
         row: Option<usize>,
         samples: Range<usize>,
         held: Vec<f64>,
-        /// The derivatives of inputs that lag by their time constants, where those of outputs are not those of the motion.
-        lags: Vec<f64>,
+        /// Inputs that lag, with the derivatives by their time constants, where those of outputs are not those of the motion.
+        lags: Vec<[f64; 2]>,
     },
     /// Loops were closed; the closed state and the root of P before start at `tape`.
     Close { t: f64, held: Vec<f64>, tape: usize },

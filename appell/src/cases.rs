@@ -10,6 +10,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 
 use crate::Error;
+use crate::evaluation::quantities;
 use crate::setup::instead;
 
 /// Arguments of the equations, in SI.
@@ -72,18 +73,20 @@ pub struct Cases<'a> {
     text: &'a str,
     info: &'a ModelInfo,
     list: Vec<&'a RawValue>,
+    quantities: BTreeSet<&'static str>,
 }
 
 impl<'a> Cases<'a> {
     /// Reads `{"cases": [{"parameters": {…}, "state": {…}, "inputs": {…}, "t": 0}, …]}`; a case may have
-    /// `"accelerations"` by pseudo-velocity. All errors are reported at once.
+    /// `"accelerations"` by pseudo-velocity. A list `"quantities"` beside the cases names the wanted ones, by default
+    /// all. All errors are reported at once.
     pub fn read(file: &str, text: &'a str, info: &'a ModelInfo) -> Result<Self, Error> {
         let mut reader = Reader::new(text);
-        let list = match serde_json::from_str(text) {
-            Ok(top) => reader.list(top),
+        let (list, quantities) = match serde_json::from_str(text) {
+            Ok(top) => reader.top(top),
             Err(error) => {
                 reader.broken(&error);
-                Vec::new()
+                Default::default()
             }
         };
         for case in &list {
@@ -93,10 +96,20 @@ impl<'a> Cases<'a> {
             reader.case(case, info);
         }
         if reader.findings.is_empty() {
-            Ok(Self { text, info, list })
+            Ok(Self {
+                text,
+                info,
+                list,
+                quantities,
+            })
         } else {
             Err(Report::new(file, text, reader.findings).into())
         }
+    }
+
+    /// The quantities to be evaluated.
+    pub fn quantities(&self) -> BTreeSet<&'static str> {
+        self.quantities.clone()
     }
 
     /// The cases in the order of the file.
@@ -144,15 +157,36 @@ impl<'a> Reader<'a> {
         );
     }
 
-    /// The list of cases.
-    fn list(&mut self, top: &'a RawValue) -> Vec<&'a RawValue> {
+    /// The list of cases, and the quantities.
+    fn top(&mut self, top: &'a RawValue) -> (Vec<&'a RawValue>, BTreeSet<&'static str>) {
         let Some(object) = self.object(top, "an object") else {
-            return Vec::new();
+            return Default::default();
         };
-        self.keys(&object, self.head(top), &["cases"], "cases");
+        self.keys(&object, self.head(top), &["cases", "quantities"], "cases");
         let list = object.get("cases");
         let list = list.and_then(|list| self.parse(list, "a list of cases"));
-        list.unwrap_or_default()
+        let named = object.get("quantities").map(|raw| self.quantities(raw));
+        let quantities = named.unwrap_or_else(|| quantities().collect());
+        (list.unwrap_or_default(), quantities)
+    }
+
+    /// Quantities by their keys.
+    fn quantities(&mut self, raw: &'a RawValue) -> BTreeSet<&'static str> {
+        let list: Option<Vec<&'a RawValue>> = self.parse(raw, "a list of quantities");
+        let mut named = BTreeSet::new();
+        for raw in list.unwrap_or_default() {
+            let Some(name) = self.parse::<String>(raw, "the name of a quantity") else {
+                continue;
+            };
+            if let Some(known) = quantities().find(|known| *known == name) {
+                named.insert(known);
+                continue;
+            }
+            let help = instead(&name, quantities());
+            let message = format!("there is no quantity `{name}`");
+            self.tell(Code::UnknownName, message, self.span(raw), help);
+        }
+        named
     }
 
     /// The position of a value in the text.

@@ -1,8 +1,12 @@
 //! Three implementations of the equations of a mechanism.
 
+use std::sync::Arc;
+
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
-use appell_codegen::program::{FunctionKind, Program};
+use appell_codegen::program::FunctionKind;
+use appell_codegen::tape::Tape;
+use appell_codegen::tapes::Tapes;
 use appell_runtime::model::Model;
 
 use crate::source::Source;
@@ -24,59 +28,35 @@ pub enum Equations {
     /// Compiled into this program.
     Shipped(&'static dyn Model),
     /// Derived in this process.
-    Made {
-        /// Their implementation.
-        model: Box<dyn Model + Send>,
-        /// Why it is interpreted although machine code was requested.
-        note: Option<String>,
-    },
+    Made(Made),
+}
+
+/// A model derived in this process. Each function is derived and compiled when it is first used.
+pub struct Made {
+    model: Box<dyn Model + Send>,
+    tapes: Arc<Tapes>,
+    /// Why it is interpreted although machine code was requested.
+    note: Option<String>,
 }
 
 impl Equations {
     /// The equations of a spec.
     pub fn new(source: &Source, engine: Engine) -> Result<Self, Error> {
         match (engine, source.shipped) {
-            (Engine::Emitted, Some(shipped)) => return Ok(Self::Shipped(shipped.model)),
+            (Engine::Emitted, Some(shipped)) => Ok(Self::Shipped(shipped.model)),
             (Engine::Emitted, None) => {
                 let message = "emitted code exists only for shipped mechanisms; a spec file runs as machine code";
-                return Err(Error::request(Field::Engine, message));
+                Err(Error::request(Field::Engine, message))
             }
-            _ => {}
+            _ => Ok(Self::Made(Made::new(source, engine)?)),
         }
-        Self::made(source, engine, &FunctionKind::STANDARD)
-    }
-
-    /// Machine code with the adjoints that estimation needs.
-    pub fn for_estimation(source: &Source) -> Result<Self, Error> {
-        Self::made(source, Engine::Jit, &FunctionKind::ALL)
-    }
-
-    fn made(source: &Source, engine: Engine, kinds: &[FunctionKind]) -> Result<Self, Error> {
-        let program = appell_codegen::compile(&source.file, &source.text, kinds)?;
-        Ok(Self::of(program, engine))
-    }
-
-    /// A program as machine code if requested and possible, else interpreted.
-    pub(crate) fn of(program: Program, engine: Engine) -> Self {
-        let mut note = None;
-        if engine == Engine::Jit {
-            match JitModel::new(&program) {
-                Ok(model) => {
-                    let model: Box<dyn Model + Send> = Box::new(model);
-                    return Self::Made { model, note };
-                }
-                Err(reason) => note = Some(format!("{reason}; the equations are interpreted")),
-            }
-        }
-        let model: Box<dyn Model + Send> = Box::new(InterpretedModel::new(program));
-        Self::Made { model, note }
     }
 
     /// Why the equations are interpreted although machine code was requested.
     pub fn note(&self) -> Option<&str> {
         match self {
             Self::Shipped(_) => None,
-            Self::Made { note, .. } => note.as_deref(),
+            Self::Made(made) => made.note.as_deref(),
         }
     }
 
@@ -94,7 +74,50 @@ impl Equations {
     pub fn model(&self) -> &dyn Model {
         match self {
             Self::Shipped(model) => *model,
-            Self::Made { model, .. } => model.as_ref(),
+            Self::Made(made) => made.model(),
         }
+    }
+
+    /// Derives functions now, in parallel, or returns why one of them is impossible.
+    pub(crate) fn require(&self, source: &Source, kinds: &[FunctionKind]) -> Result<(), Error> {
+        match self {
+            Self::Shipped(_) => Ok(()),
+            Self::Made(made) => Ok(made.tapes.require(kinds, &source.text)?),
+        }
+    }
+}
+
+impl Made {
+    /// The equations of a spec, derived in this process.
+    pub(crate) fn new(source: &Source, engine: Engine) -> Result<Self, Error> {
+        Self::of(source, Tapes::of_spec(&source.file, &source.text)?, engine)
+    }
+
+    /// Machine code of the functions of a source if requested and possible, else their interpretation.
+    pub(crate) fn of(source: &Source, tapes: Tapes, engine: Engine) -> Result<Self, Error> {
+        let tapes = Arc::new(tapes);
+        tapes.require(&[FunctionKind::Rates], &source.text)?;
+        let mut note = None;
+        if engine == Engine::Jit {
+            match JitModel::over(tapes.clone()) {
+                Ok(model) => {
+                    let model = Box::new(model);
+                    return Ok(Self { model, tapes, note });
+                }
+                Err(reason) => note = Some(format!("{reason}; the equations are interpreted")),
+            }
+        }
+        let model = Box::new(InterpretedModel::over(tapes.clone()));
+        Ok(Self { model, tapes, note })
+    }
+
+    /// The model.
+    pub(crate) fn model(&self) -> &dyn Model {
+        self.model.as_ref()
+    }
+
+    /// The operations of the rates.
+    pub(crate) fn rates(&self) -> Option<&Tape> {
+        self.tapes.get(FunctionKind::Rates)
     }
 }

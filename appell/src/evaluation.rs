@@ -1,8 +1,10 @@
 //! The equations evaluated at given states.
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 
+use appell_codegen::program::FunctionKind;
 pub use appell_runtime::condition::Conditions;
 pub use appell_runtime::contact::ContactForce;
 use appell_runtime::contact::ContactForces;
@@ -16,7 +18,42 @@ use crate::cases::Case;
 use crate::json::{named, names};
 use crate::{Error, Model};
 
-/// All quantities of the equations at one state, in SI; matrices are stored by rows.
+/// The quantities of the equations, by their keys in JSON, with the functions that give them.
+const QUANTITIES: [(&[&str], &[FunctionKind]); 11] = {
+    use FunctionKind as F;
+    [
+        (&["rates"], &[F::Rates]),
+        (
+            &["mass_matrix", "bias", "generalized_forces"],
+            &[F::MassMatrixAndBias, F::GeneralizedForces],
+        ),
+        (&["A", "B"], &[F::Jacobians]),
+        (&["P"], &[F::ParameterJacobian]),
+        (
+            &[
+                "acceleration_energy",
+                "kinetic_energy",
+                "potential_energy",
+                "power",
+            ],
+            &[F::AccelerationEnergy, F::Energies],
+        ),
+        (&["constraint_residual"], &[F::ConstraintResidual]),
+        (&["constraint_forces"], &[F::ConstraintForces]),
+        (&["contacts"], &[F::ConstraintForces, F::Contacts]),
+        (&["conditions"], &[F::MassMatrixAndBias, F::Systems]),
+        (&["outputs"], &[F::Outputs]),
+        (&["inverse_dynamics"], &[F::InverseDynamics]),
+    ]
+};
+
+/// The keys of all quantities.
+pub fn quantities() -> impl Iterator<Item = &'static str> + Clone {
+    QUANTITIES.iter().flat_map(|(keys, _)| keys.iter().copied())
+}
+
+/// Quantities of the equations at one state, in SI; matrices are stored by rows. Those that were not asked for are empty
+/// or zero.
 #[derive(Debug, Clone)]
 pub struct Values {
     /// Rates of the states.
@@ -42,7 +79,7 @@ pub struct Values {
     /// Forces at the contacts.
     pub contacts: Vec<ContactForce>,
     /// Condition numbers of the linear systems.
-    pub conditions: Conditions,
+    pub conditions: Option<Conditions>,
     /// Outputs.
     pub outputs: Vec<f64>,
     /// M ω̇ + b − Π for the pseudo-accelerations of the case, where it has some.
@@ -53,10 +90,11 @@ pub struct Values {
 pub struct Evaluation<'a> {
     model: &'a Model,
     inputs: ModelInputs<'a>,
+    wanted: BTreeSet<&'static str>,
 }
 
 impl Model {
-    /// The equations, to be evaluated at given states.
+    /// The equations, to be evaluated at given states; only functions that the wanted quantities need are derived.
     ///
     /// ```
     /// use appell::{Model, cases::Cases};
@@ -64,17 +102,23 @@ impl Model {
     /// let model = Model::shipped("pendulum")?;
     /// let cases = r#"{"cases": [{"state": {"theta": 0.1, "omega": 0}}]}"#;
     /// let cases = Cases::read("cases.json", cases, model.info())?;
-    /// let evaluation = model.evaluation()?;
+    /// let evaluation = model.evaluation(cases.quantities())?;
     /// for case in cases.iter() {
     ///     assert!(evaluation.at(&case).rates[0] < 0.0);
     /// }
     /// # Ok::<(), appell::Error>(())
     /// ```
-    pub fn evaluation(&self) -> Result<Evaluation<'_>, Error> {
+    pub fn evaluation(&self, wanted: BTreeSet<&'static str>) -> Result<Evaluation<'_>, Error> {
+        let asked = |keys: &[&str]| keys.iter().any(|key| wanted.contains(key));
+        let functions = QUANTITIES.iter().filter(|(keys, _)| asked(keys));
+        let functions: Vec<FunctionKind> =
+            functions.flat_map(|(_, of)| of.iter().copied()).collect();
+        self.require(&functions)?;
         let inputs = ModelInputs::new(self.info(), &ZeroInputs)?;
         Ok(Evaluation {
             model: self,
             inputs,
+            wanted,
         })
     }
 }
@@ -94,7 +138,9 @@ impl Evaluation<'_> {
             p: &case.p,
         };
         let accelerations = case.accelerations.as_deref();
-        Values::at(self.model.equations(), at, accelerations)
+        Values::at(self.model.equations(), at, accelerations, |keys| {
+            keys.iter().any(|key| self.wanted.contains(key))
+        })
     }
 
     /// Writes the values of cases as JSON, one by one, with their names; non-finite numbers are `null`. `see` is called with
@@ -124,7 +170,7 @@ impl Evaluation<'_> {
         let cases = cases.enumerate().map(|(index, case)| {
             let values = self.at(&case);
             see(index, &case, &values);
-            values.to_json(info)
+            values.to_json(info, &self.wanted)
         });
         map.serialize_entry("cases", &List(RefCell::new(cases)))?;
         map.end()?;
@@ -142,7 +188,12 @@ impl<I: Iterator<Item = Value>> Serialize for List<I> {
 }
 
 impl Values {
-    fn at(model: &dyn Equations, at: At<'_>, accelerations: Option<&[f64]>) -> Self {
+    fn at(
+        model: &dyn Equations,
+        at: At<'_>,
+        accelerations: Option<&[f64]>,
+        asked: impl Fn(&[&str]) -> bool,
+    ) -> Self {
         let info = model.info();
         let (n, s, m, k) = (
             info.state_len(),
@@ -150,33 +201,63 @@ impl Values {
             info.input_len(),
             info.parameter_len(),
         );
-        let filled = |count: usize, fill: &dyn Fn(&mut [f64])| {
-            let mut values = vec![0.0; count];
-            fill(&mut values);
+        let filled = |key: &str, count: usize, fill: &dyn Fn(&mut [f64])| {
+            let mut values = Vec::new();
+            if asked(&[key]) {
+                values.resize(count, 0.0);
+                fill(&mut values);
+            }
             values
         };
-        let (mut a, mut b) = (vec![0.0; n * n], vec![0.0; n * m]);
-        model.jacobians(at, &mut vec![0.0; n], &mut a, &mut b);
-        let (mut mass_matrix, mut bias, mut forces) =
-            (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
-        model.appell(at, &mut mass_matrix, &mut bias, &mut forces);
+        let [mut a, mut b, mut mass_matrix, mut bias, mut forces] = [(); 5].map(|()| Vec::new());
+        if asked(&["A", "B"]) {
+            (a, b) = (vec![0.0; n * n], vec![0.0; n * m]);
+            model.jacobians(at, &mut vec![0.0; n], &mut a, &mut b);
+        }
+        if asked(&["mass_matrix", "bias", "generalized_forces"]) {
+            (mass_matrix, bias, forces) = (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
+            model.appell(at, &mut mass_matrix, &mut bias, &mut forces);
+        }
+        let energies = [
+            "acceleration_energy",
+            "kinetic_energy",
+            "potential_energy",
+            "power",
+        ];
         let (rows, reactions) = (info.constraint_rows.len(), info.reactions.len());
         Self {
-            rates: filled(n, &|rates| model.rates(at, rates)),
+            rates: filled("rates", n, &|rates| model.rates(at, rates)),
             a,
             b,
-            p: filled(n * k, &|p| model.parameter_jacobian(at, p)),
+            p: filled("P", n * k, &|p| model.parameter_jacobian(at, p)),
             mass_matrix,
             bias,
             forces,
-            energies: model.energies(at),
-            residual: filled(rows, &|rows| model.constraint_residual(at, rows)),
-            reactions: filled(3 * reactions, &|forces| model.constraint_forces(at, forces)),
-            contacts: ContactForces::new().at(model, at).to_vec(),
-            conditions: Conditions::of(model, at),
-            outputs: filled(info.output_len(), &|outputs| model.outputs(at, outputs)),
-            inverse_dynamics: accelerations
-                .map(|given| filled(s, &|demand| model.inverse_dynamics(at, given, demand))),
+            energies: if asked(&energies) {
+                model.energies(at)
+            } else {
+                Energies::default()
+            },
+            residual: filled("constraint_residual", rows, &|rows| {
+                model.constraint_residual(at, rows);
+            }),
+            reactions: filled("constraint_forces", 3 * reactions, &|forces| {
+                model.constraint_forces(at, forces);
+            }),
+            contacts: if asked(&["contacts"]) {
+                ContactForces::new().at(model, at).to_vec()
+            } else {
+                Vec::new()
+            },
+            conditions: asked(&["conditions"]).then(|| Conditions::of(model, at)),
+            outputs: filled("outputs", info.output_len(), &|outputs| {
+                model.outputs(at, outputs);
+            }),
+            inverse_dynamics: accelerations.map(|given| {
+                filled("inverse_dynamics", s, &|demand| {
+                    model.inverse_dynamics(at, given, demand);
+                })
+            }),
         }
     }
 
@@ -206,7 +287,7 @@ impl Values {
         lists.into_iter().flatten().all(|value| value.is_finite())
     }
 
-    fn to_json(&self, info: &ModelInfo) -> Value {
+    fn to_json(&self, info: &ModelInfo, wanted: &BTreeSet<&str>) -> Value {
         let rows = |values: &[f64], columns: usize| -> Value {
             let rows = values
                 .len()
@@ -222,7 +303,7 @@ impl Values {
             .zip(self.reactions.chunks(3))
             .map(|(reaction, force)| (reaction.name.to_string(), json!(force)))
             .collect();
-        let mut value = json!({
+        let mut all = json!({
             "rates": named(&info.states, &self.rates),
             "mass_matrix": rows(&self.mass_matrix, info.speeds),
             "bias": self.bias,
@@ -237,17 +318,20 @@ impl Values {
             "constraint_residual": self.residual,
             "constraint_forces": reactions,
             "contacts": self.contacts(info),
-            "conditions": {
-                "mass_matrix": self.conditions.mass_matrix,
-                "velocities": self.conditions.velocities,
-                "systems": self.conditions.systems,
-            },
+            "conditions": self.conditions.as_ref().map(|conditions| json!({
+                "mass_matrix": conditions.mass_matrix,
+                "velocities": conditions.velocities,
+                "systems": conditions.systems,
+            })),
             "outputs": named(&info.outputs, &self.outputs),
         });
         if let Some(demand) = &self.inverse_dynamics {
-            value["inverse_dynamics"] = json!(demand);
+            all["inverse_dynamics"] = json!(demand);
         }
-        value
+        if let Value::Object(all) = &mut all {
+            all.retain(|key, _| wanted.contains(key.as_str()));
+        }
+        all
     }
 
     /// The contact forces. An infinite friction demand is `null`.

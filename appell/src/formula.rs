@@ -1,5 +1,7 @@
 //! Expressions given at run time, evaluated with the names of a mechanism.
 
+use std::sync::Arc;
+
 use appell_codegen::jit::{NativeFunction, Sizes};
 use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
@@ -104,24 +106,21 @@ impl Workbench {
             ),
             inputs: ids(&graph, &input_symbols),
             parameters: ids(&graph, &symbols.parameters),
-            weights: Vec::new(),
-            output_weights: Vec::new(),
-            accelerations: Vec::new(),
             pi: graph.as_symbol(symbols.pi),
         };
         let count = exprs.len();
         let layout = Layout::List(count);
         let results = vec![Array::new("values", "Values.", layout, exprs)];
         let function = Function::new(FunctionKind::Outputs, results);
+        let function = function.over(Arc::new(graph), Vec::new());
         let sizes = Sizes::from(&info);
         let program = Program {
             info,
             file: String::new(),
-            graph,
             arguments,
             dependent: Vec::new(),
             systems: Vec::new(),
-            hints: Vec::new(),
+            hints: Arc::default(),
             functions: vec![function],
         };
         let tape = schedule(&program, &program.functions[0]);

@@ -12,6 +12,6 @@ impl Model {
     /// equations that hold whatever the inputs were.
     pub fn inverse(&self, set: &DataSet, options: &Options) -> Result<Answer, Error> {
         recording::check(set)?;
-        self.estimating(|equations| Ok(inverse::find(set, equations, options)?))
+        Ok(inverse::find(set, self.made()?.model(), options)?)
     }
 }

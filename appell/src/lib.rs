@@ -30,6 +30,8 @@
 
 pub mod base;
 mod batch;
+#[cfg(feature = "cache")]
+pub mod cache;
 pub mod capture;
 pub mod cases;
 pub mod check;

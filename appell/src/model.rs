@@ -6,7 +6,6 @@ use std::sync::OnceLock;
 use appell_codegen::Derived;
 use appell_codegen::compile::report;
 use appell_codegen::program::FunctionKind;
-use appell_codegen::schedule::schedule;
 use appell_codegen::tape::Tape;
 use appell_gap::{diagnose as gap, identify};
 use appell_recordings::DataSet;
@@ -17,7 +16,7 @@ use appell_runtime::{Simulation, Trajectory};
 
 use crate::control::attraction::{self, Explored};
 use crate::control::{Design, Request, Schedule, law_file};
-use crate::engine::{self, Engine};
+use crate::engine::{self, Engine, Made};
 use crate::motion::{Motion, Simulated};
 use crate::setup::{Assignment, Setup};
 use crate::source::Source;
@@ -37,10 +36,8 @@ use crate::{Error, Field, diagnosis, recording};
 pub struct Model {
     source: Source,
     equations: engine::Equations,
-    /// Whether the equations have the adjoints of estimation.
-    adjoints: bool,
-    /// The operations of the rates, compiled on first use.
-    rates: OnceLock<Tape>,
+    /// The equations derived in this process, if others are at hand.
+    made: OnceLock<Made>,
 }
 
 impl Model {
@@ -85,49 +82,37 @@ impl Model {
         Self {
             source,
             equations,
-            adjoints: false,
-            rates: OnceLock::new(),
+            made: OnceLock::new(),
         }
     }
 
-    /// The model of a derivation that is there already, for motions as machine code; `derived` is that of
-    /// the source. Whatever needs derivatives of the equations panics: steady motions, gains, evaluation.
-    pub fn of_motions(source: Source, derived: Derived) -> Result<Self, Error> {
-        let program = derived.program(&source.text, &FunctionKind::OF_MOTIONS)?;
-        let equations = engine::Equations::of(program, Engine::Jit);
-        Ok(Self::with(source, equations))
+    /// The model of a derivation that is there already, as machine code; `derived` is that of the source.
+    pub fn of_derivation(source: Source, derived: Derived) -> Result<Self, Error> {
+        let made = Made::of(&source, derived.functions().into(), Engine::Jit)?;
+        Ok(Self::with(source, engine::Equations::Made(made)))
     }
 
-    /// The model of a spec with adjoints, which [`identify`](Self::identify) and
-    /// [`inverse`](Self::inverse) derive at each call otherwise.
-    pub fn for_estimation(source: Source) -> Result<Self, Error> {
-        let equations = engine::Equations::for_estimation(&source)?;
-        Ok(Self {
-            adjoints: true,
-            ..Self::with(source, equations)
-        })
-    }
-
-    /// A computation with equations that have adjoints.
-    pub(crate) fn estimating<R>(
-        &self,
-        compute: impl FnOnce(&dyn Equations) -> Result<R, Error>,
-    ) -> Result<R, Error> {
-        if self.adjoints {
-            return compute(self.equations());
+    /// The equations derived in this process, which have adjoints; those of a shipped mechanism at the first call.
+    pub(crate) fn made(&self) -> Result<&Made, Error> {
+        if let engine::Equations::Made(made) = &self.equations {
+            return Ok(made);
         }
-        compute(engine::Equations::for_estimation(&self.source)?.model())
+        if let Some(made) = self.made.get() {
+            return Ok(made);
+        }
+        let made = Made::new(&self.source, Engine::Jit)?;
+        Ok(self.made.get_or_init(|| made))
     }
 
     /// The operations of the rates, which closed loops are made from.
     pub(crate) fn rates(&self) -> Result<&Tape, Error> {
-        if let Some(rates) = self.rates.get() {
-            return Ok(rates);
-        }
-        let Source { file, text, .. } = &self.source;
-        let program = appell_codegen::compile(file, text, &[FunctionKind::Rates])?;
-        let tape = schedule(&program, &program.functions[0]);
-        Ok(self.rates.get_or_init(|| tape))
+        let missing = || Error::request(Field::Model, "its rates cannot be derived");
+        self.made()?.rates().ok_or_else(missing)
+    }
+
+    /// Derives functions now, in parallel, which a first use derives otherwise; returns why one of them is impossible.
+    pub fn require(&self, functions: &[FunctionKind]) -> Result<(), Error> {
+        self.equations.require(&self.source, functions)
     }
 
     /// The equations of motion: rates, Jacobians, Appell's equations, energies, outputs.
@@ -258,6 +243,7 @@ impl Model {
 
     /// A request for steady motions with its names resolved, also for charts over two quantities.
     pub fn resolve(&self, question: &Question) -> Result<Resolved<'_>, Error> {
+        self.require(&[FunctionKind::Jacobians])?;
         let mut setup = self.setup()?;
         setup.set(&question.parameters)?;
         question.resolve(self.equations(), &setup)
@@ -276,6 +262,7 @@ impl Model {
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn control(&self, request: &Request) -> Result<Design, Error> {
+        self.require(&[FunctionKind::Jacobians])?;
         request.design(self.equations(), self.setup()?)
     }
 
@@ -294,6 +281,7 @@ impl Model {
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn schedule(&self, request: &Request, range: &Assignment) -> Result<Schedule, Error> {
+        self.require(&[FunctionKind::Jacobians])?;
         Schedule::new(self.equations(), self.setup()?, request, range)
     }
 
@@ -344,7 +332,8 @@ impl Model {
         stage: impl FnMut(&'static str),
     ) -> Result<identify::Answer, Error> {
         recording::check(set)?;
-        self.estimating(|equations| Ok(identify::identify(set, equations, options, stage)?))
+        let equations = self.made()?.model();
+        Ok(identify::identify(set, equations, options, stage)?)
     }
 }
 

@@ -1,8 +1,9 @@
 //! Robots from their files, against a recursive Newton-Euler algorithm that knows neither specs nor Gibbs-Appell.
 
+use appell::Model;
 use appell::cases::Case;
+use appell::evaluation::{Values, quantities};
 use appell::robot::{self, Letters, Options, Without};
-use appell::{Model, evaluation::Values};
 
 /// Rounding of sums of some hundred terms.
 const ROUNDING: f64 = 1e-13;
@@ -228,7 +229,7 @@ fn values(spec: &str, states: &[[f64; 8]]) -> Vec<Values> {
             accelerations: None,
         }
     });
-    let evaluation = model.evaluation().expect("values");
+    let evaluation = model.evaluation(quantities().collect()).expect("values");
     cases.map(|case| evaluation.at(&case)).collect()
 }
 

@@ -4,8 +4,9 @@ use appell_spec::mechanism::Mechanism;
 use appell_spec::{Code, Diagnostic, Report, Severity};
 
 use crate::audit::{Audit, audit, counts_velocities, reasons};
+use crate::mechanics::assemble::Functions;
 use crate::mechanics::finding::{Finding, Item};
-use crate::mechanics::{self, Derivation, Regressor, assemble, derive};
+use crate::mechanics::{self, Derivation, Regressor, derive};
 use crate::program::{FunctionKind, Program};
 
 /// A mechanism whose equations of motion have been derived.
@@ -55,13 +56,14 @@ pub fn audited(file: &str, text: &str) -> Result<Derived, Report> {
 impl Derived {
     /// The program with the functions `kinds`; `text` is that of the spec.
     pub fn program(self, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
-        let Self {
-            mechanism,
-            derivation,
-            ..
-        } = self;
-        assemble::program(derivation, &mechanism, kinds)
-            .map_err(|findings| report(&mechanism, text, &findings))
+        let functions = self.functions();
+        let program = functions.program(kinds);
+        program.map_err(|findings| report(functions.mechanism(), text, &findings))
+    }
+
+    /// The functions of the model, to be derived on request.
+    pub fn functions(self) -> Functions {
+        Functions::new(self.derivation, self.mechanism)
     }
 
     /// Adds the results of an [audit](crate::audit) of the equations to the warnings; `text` is that of the

@@ -1,47 +1,45 @@
 //! Models that are interpreted, for tests and in place of compiled code.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use appell_runtime::model::At;
 
-use crate::model::{Engine, ProgramModel, tape_of};
-use crate::program::{FunctionKind, Program};
+use crate::model::{Engine, ProgramModel};
+use crate::program::FunctionKind;
 use crate::tape::{Tape, interpret_weighted};
+use crate::tapes::Tapes;
 
 /// A model whose tapes are interpreted.
 pub type InterpretedModel = ProgramModel<Interpreter>;
 
 /// Interprets tapes.
 #[derive(Debug)]
-pub struct Interpreter {
-    /// By [`FunctionKind`], made at the first use.
-    tapes: [OnceLock<Tape>; FunctionKind::COUNT],
-}
+pub struct Interpreter;
 
 impl ProgramModel<Interpreter> {
-    /// A model of a program.
-    pub fn new(program: Program) -> Self {
-        let tapes = [const { OnceLock::new() }; FunctionKind::COUNT];
-        Self::of(Arc::new(program), Interpreter { tapes })
+    /// A model of a program or a derivation.
+    pub fn new(functions: impl Into<Tapes>) -> Self {
+        Self::over(Arc::new(functions.into()))
+    }
+
+    /// A model of functions that others use as well.
+    pub fn over(tapes: Arc<Tapes>) -> Self {
+        Self::of(tapes, Interpreter)
     }
 }
 
 impl Engine for Interpreter {
     fn call<const N: usize>(
         &self,
-        program: &Program,
-        kind: FunctionKind,
+        _: FunctionKind,
+        tape: &Tape,
         at: At<'_>,
         own: &[f64],
         out: [&mut [f64]; N],
     ) {
-        let results = interpret_weighted(self.tape(program, kind, at.p), at, own);
+        let results = interpret_weighted(tape, at, own);
         for (out, result) in out.into_iter().zip(results) {
             out.copy_from_slice(&result);
         }
-    }
-
-    fn tape(&self, program: &Program, kind: FunctionKind, _: &[f64]) -> &Tape {
-        self.tapes[kind as usize].get_or_init(|| tape_of(program, kind))
     }
 }

@@ -18,6 +18,7 @@ pub mod python;
 pub mod schedule;
 pub mod symbolic;
 pub mod tape;
+pub mod tapes;
 mod text;
 
 pub use build::build;

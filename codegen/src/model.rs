@@ -9,85 +9,58 @@ use appell_runtime::model::{Along, At, Energies, Gradient, Model, ModelInfo, Swi
 use appell_runtime::real::Enclosure;
 use appell_runtime::switching::Counts;
 
-use crate::program::{FunctionKind, Program};
-use crate::schedule::schedule;
-use crate::tape::{ResultArray, Tape, enclose_along};
+use crate::program::FunctionKind;
+use crate::tape::{Tape, enclose_along};
+use crate::tapes::Tapes;
 
-/// What evaluates the functions of a program.
+/// What evaluates functions.
 pub trait Engine: Send + Sync {
-    /// Writes the results of a function that the program has at a point, those of [`FunctionKind::model_results`] in
-    /// that order. `own` is the argument that only some functions have.
+    /// Writes the results of a tape at a point. `own` is the argument that only some functions have.
     ///
     /// # Panics
     ///
     /// If `out` has slices of other lengths than the results.
     fn call<const N: usize>(
         &self,
-        program: &Program,
         kind: FunctionKind,
+        tape: &Tape,
         at: At<'_>,
         own: &[f64],
         out: [&mut [f64]; N],
     );
 
-    /// The tape of these results at parameters `p`.
-    fn tape(&self, program: &Program, kind: FunctionKind, p: &[f64]) -> &Tape;
+    /// The tape that is evaluated instead of this one at parameters `p`.
+    fn tape<'t>(&'t self, _: FunctionKind, tape: &'t Tape, _: &[f64]) -> &'t Tape {
+        tape
+    }
 }
 
-/// A model made in this process. Functions that its program lacks return NaN, or what the trait of models has in
-/// their place, such as differences for most derivatives.
+/// A model made in this process. Its functions are derived and compiled at their first use. Those that it lacks return
+/// NaN, or what the trait of models has in their place, such as differences for most derivatives.
 pub struct ProgramModel<E> {
-    pub(crate) program: Arc<Program>,
+    pub(crate) tapes: Arc<Tapes>,
     pub(crate) engine: E,
-    /// By [`FunctionKind`]: whether the program has it.
-    has: [bool; FunctionKind::COUNT],
-}
-
-/// The tape of a function with the results that the trait of models has; without operations if the program lacks
-/// it. The operations are those of the whole function, so that results do not depend on the selection.
-pub(crate) fn tape_of(program: &Program, kind: FunctionKind) -> Tape {
-    let mut tape = match program.function(kind) {
-        Some(function) if !kind.model_results().is_empty() => schedule(program, function),
-        _ => Tape::default(),
-    };
-    let all = std::mem::take(&mut tape.results);
-    let wanted = kind.model_results().iter().map(|&name| {
-        let found = all.iter().find(|result| result.name == name);
-        found.cloned().unwrap_or_else(|| ResultArray {
-            name: name.to_owned(),
-            entries: Vec::new(),
-        })
-    });
-    tape.results = wanted.collect();
-    tape.live()
 }
 
 impl<E: Engine> ProgramModel<E> {
-    pub(crate) fn of(program: Arc<Program>, engine: E) -> Self {
-        let mut has = [false; FunctionKind::COUNT];
-        for function in &program.functions {
-            has[function.kind as usize] = true;
-        }
-        Self {
-            program,
-            engine,
-            has,
-        }
+    pub(crate) fn of(tapes: Arc<Tapes>, engine: E) -> Self {
+        Self { tapes, engine }
+    }
+
+    /// Its functions as tapes.
+    pub fn tapes(&self) -> &Arc<Tapes> {
+        &self.tapes
     }
 
     fn has(&self, kind: FunctionKind) -> bool {
-        self.has[kind as usize]
+        self.tapes.get(kind).is_some()
     }
 
-    /// Bounds on the results of a function along a segment, one after the other; unknown where the program lacks it.
+    /// Bounds on the results of a function along a segment, one after the other; unknown where the model lacks it.
     fn bound(&self, kind: FunctionKind, along: &Along<'_>, bounds: &mut [Enclosure]) {
         bounds.fill(Enclosure::UNKNOWN);
-        if self.has(kind) {
-            enclose_along(
-                self.engine.tape(&self.program, kind, along.p),
-                along,
-                bounds,
-            );
+        if let Some(tape) = self.tapes.get(kind) {
+            enclose_along(self.engine.tape(kind, tape, along.p), along, bounds);
         }
     }
 
@@ -102,8 +75,8 @@ impl<E: Engine> ProgramModel<E> {
         own: &[f64],
         mut out: [&mut [f64]; N],
     ) {
-        if self.has(kind) {
-            self.engine.call(&self.program, kind, at, own, out);
+        if let Some(tape) = self.tapes.get(kind) {
+            self.engine.call(kind, tape, at, own, out);
         } else {
             for result in &mut out {
                 result.fill(f64::NAN);
@@ -114,7 +87,7 @@ impl<E: Engine> ProgramModel<E> {
 
 impl<E: Engine> Model for ProgramModel<E> {
     fn info(&self) -> &ModelInfo {
-        &self.program.info
+        self.tapes.info()
     }
 
     fn rates(&self, at: At<'_>, rates: &mut [f64]) {
@@ -170,7 +143,7 @@ impl<E: Engine> Model for ProgramModel<E> {
     }
 
     fn system_sizes(&self) -> &[usize] {
-        &self.program.systems
+        self.tapes.systems()
     }
 
     fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
@@ -243,7 +216,7 @@ impl<E: Engine> Model for ProgramModel<E> {
     }
 
     fn dependent_coordinates(&self) -> &[usize] {
-        &self.program.dependent
+        self.tapes.dependent()
     }
 
     fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
@@ -257,7 +230,7 @@ impl<E: Engine> Model for ProgramModel<E> {
 
 impl<E: Engine> Switching for ProgramModel<E> {
     fn counts(&self) -> Counts {
-        self.program.switch_counts()
+        self.tapes.switch_counts()
     }
 
     fn answers(&self, at: At<'_>, answers: &mut [f64]) {
@@ -276,7 +249,7 @@ impl<E: Engine> Switching for ProgramModel<E> {
     }
 
     fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
-        let count = self.program.switch_counts().crossings;
+        let count = self.tapes.switch_counts().crossings;
         let (crossings, pulses) = crossings.split_at_mut(count);
         self.evaluate(FunctionKind::Crossings, at, [crossings, pulses]);
     }
@@ -289,7 +262,7 @@ impl<E: Engine> Switching for ProgramModel<E> {
 impl<E> fmt::Debug for ProgramModel<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ProgramModel")
-            .field("name", &self.program.info.name)
+            .field("name", &self.tapes.info().name)
             .finish_non_exhaustive()
     }
 }

@@ -3,6 +3,8 @@
 mod functions;
 mod layout;
 
+use std::sync::Arc;
+
 use appell_runtime::model::{ModelInfo, Quantity};
 use appell_runtime::switching::Counts;
 
@@ -17,16 +19,15 @@ pub struct Program {
     pub info: ModelInfo,
     /// Name of the spec file, for comments.
     pub file: String,
-    /// Owner of all expressions.
-    pub graph: Graph,
-    /// The symbols that expressions may contain, in the order of `info`.
+    /// The symbols that the expressions of all functions may contain, in the order of `info`.
     pub arguments: Arguments,
     /// Dependent coordinates, one per position constraint, in the order of the constraints.
     pub dependent: Vec<usize>,
     /// Sizes of the linear systems of several unknowns that are solved with pivoting to compute the rates.
     pub systems: Vec<usize>,
-    /// Values with established names, for intermediate values without a name.
-    pub hints: Vec<Hint>,
+    /// Values with established names, for intermediate values without a name; expressions in the graph of every
+    /// function.
+    pub hints: Arc<[Hint]>,
     /// Functions, in the order of display.
     pub functions: Vec<Function>,
 }
@@ -70,7 +71,7 @@ pub struct Hint {
     pub opposite: Option<String>,
 }
 
-/// Symbols of the arguments.
+/// Symbols of the arguments that all functions have.
 #[derive(Debug, Clone)]
 pub struct Arguments {
     /// Time.
@@ -81,12 +82,6 @@ pub struct Arguments {
     pub inputs: Vec<SymbolId>,
     /// Parameters.
     pub parameters: Vec<SymbolId>,
-    /// Weights of [`FunctionKind::Adjoint`], if the program has it.
-    pub weights: Vec<SymbolId>,
-    /// Weights of [`FunctionKind::OutputAdjoint`], if the program has it.
-    pub output_weights: Vec<SymbolId>,
-    /// Given pseudo-accelerations.
-    pub accelerations: Vec<SymbolId>,
     /// The number π, if expressions may contain it.
     pub pi: Option<SymbolId>,
 }
@@ -96,6 +91,11 @@ pub struct Arguments {
 pub struct Function {
     /// Which one.
     pub kind: FunctionKind,
+    /// Owner of its expressions. Each function is derived from the equations of motion alone, so that its operations
+    /// do not depend on which other functions there are.
+    pub graph: Arc<Graph>,
+    /// Symbols of the argument that only some functions have; see [`FunctionKind::takes`].
+    pub own: Vec<SymbolId>,
     /// Intermediate quantities that are displayed first. Later computations use their values and treat them as
     /// opaque.
     pub stages: Vec<Stage>,
@@ -179,10 +179,12 @@ pub struct Stage {
 }
 
 impl Function {
-    /// A function without intermediate stages.
+    /// A function without intermediate stages; the graph of its expressions is [added](Self::over) to it.
     pub fn new(kind: FunctionKind, results: Vec<Array>) -> Self {
         Self {
             kind,
+            graph: Arc::default(),
+            own: Vec::new(),
             stages: Vec::new(),
             results,
             glossary: Vec::new(),
@@ -190,6 +192,14 @@ impl Function {
             equations: Vec::new(),
             remarks: Vec::new(),
         }
+    }
+
+    /// The function with the graph of its expressions, and the symbols of its own argument.
+    #[must_use]
+    pub fn over(mut self, graph: Arc<Graph>, own: Vec<SymbolId>) -> Self {
+        self.graph = graph;
+        self.own = own;
+        self
     }
 
     /// Adds remarks for callers.

@@ -58,6 +58,6 @@ pub fn schedule(program: &Program, function: &program::Function) -> Tape {
 pub fn schedule_tuned(program: &Program, function: &program::Function, tuning: Tuning) -> Tape {
     let derived = lower::lower(program, function);
     let cheapest = search::cheapest(&derived, tuning);
-    let hints = meet::known_values(&cheapest, &lower::hints(program));
+    let hints = meet::known_values(&cheapest, &lower::hints(program, function));
     bind::bind(program, function, &cheapest, hints)
 }

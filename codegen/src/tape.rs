@@ -27,6 +27,7 @@ use crate::symbolic::{Function, Rational, Relation};
 
 /// A value of a [`Tape`], by the operation that computes it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct Value(pub u32);
 
 impl Value {
@@ -44,6 +45,7 @@ impl Value {
 
 /// An argument of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub enum Argument {
     /// Time.
     Time,
@@ -63,6 +65,7 @@ pub enum Argument {
 
 /// An operation on earlier values.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub enum Operation {
     /// An argument.
     Argument(Argument),
@@ -192,6 +195,7 @@ impl Operation {
 
 /// The four operations of arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub enum Arithmetic {
     /// `+`
     Add,
@@ -205,6 +209,7 @@ pub enum Arithmetic {
 
 /// A result array.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct ResultArray {
     /// Its name.
     pub name: String,
@@ -225,6 +230,7 @@ impl ResultArray {
 
 /// The program of one function.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tape {
     /// The operations.
     pub operations: Vec<Operation>,

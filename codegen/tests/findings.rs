@@ -288,7 +288,7 @@ fn a_contact_that_another_at_its_point_outdoes_is_warned_of() {
 }
 
 /// A chain of links that turn against each other about changing axes.
-fn chain(links: usize) -> String {
+pub(crate) fn chain(links: usize) -> String {
     let mut text = String::from(
         "[mechanism]\nname = 'chain'\ntitle = 'a chain'\n[parameters]\nm = { value = 1, unit = 'kg' }\n\
          l = { value = 1, unit = 'm' }\n",

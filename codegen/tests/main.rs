@@ -24,6 +24,9 @@ mod jit_random;
 #[cfg(feature = "jit")]
 mod jit_safety;
 mod joints;
+#[cfg(feature = "cache")]
+mod kept;
+mod on_demand;
 #[cfg(feature = "jit")]
 mod responses;
 mod schedule;

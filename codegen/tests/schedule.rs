@@ -35,7 +35,7 @@ fn error(program: &Program, function: &Function, numbers: &mut Numbers) -> f64 {
     let u = numbers.list(at.inputs.len());
     let p = numbers.list(at.parameters.len());
     let t = numbers.next();
-    let mut values = vec![f64::NAN; program.graph.symbol_count()];
+    let mut values = vec![f64::NAN; function.graph.symbol_count()];
     let lists = [(&at.states, &x), (&at.inputs, &u), (&at.parameters, &p)];
     for (symbols, list) in lists {
         for (symbol, value) in symbols.iter().zip(list) {
@@ -48,7 +48,7 @@ fn error(program: &Program, function: &Function, numbers: &mut Numbers) -> f64 {
         .iter()
         .flat_map(|array| array.entries.clone())
         .collect();
-    let expected = evaluate(&program.graph, &values, &roots);
+    let expected = evaluate(&function.graph, &values, &roots);
     let found = interpret(&schedule, t, &x, &u, &p).concat();
     assert_eq!(expected.len(), found.len());
     // Where large terms cancel, digits are lost in any order of operations. Arguments that are
@@ -56,7 +56,7 @@ fn error(program: &Program, function: &Function, numbers: &mut Numbers) -> f64 {
     for (place, value) in values.iter_mut().enumerate() {
         *value *= 1.0 + 1e-12 * (place % 3) as f64;
     }
-    let moved = evaluate(&program.graph, &values, &roots);
+    let moved = evaluate(&function.graph, &values, &roots);
     let all = expected.iter().zip(&found).zip(&moved);
     all.map(|((expected, found), moved)| {
         let lost = 1e10 * (moved - expected).abs();

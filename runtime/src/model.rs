@@ -14,6 +14,7 @@ pub type List<T> = Cow<'static, [T]>;
 /// A named quantity with its unit. All numbers of a model are in SI; `unit` and `scale` define the display unit:
 /// `value_in_unit = value / scale`.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Quantity {
     /// Identifier in the spec.
     pub name: Text,
@@ -86,6 +87,7 @@ pub fn tidy(x: f64) -> f64 {
 
 /// Interpolation of a tabulated signal. Before the first and after the last row the value at that end applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Interpolation {
     /// Piecewise constant, from a row's time up to the next.
     Hold,
@@ -99,6 +101,7 @@ pub enum Interpolation {
 
 /// A function of time given by its values, in SI. [`crate::Signal`] evaluates it.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SignalTable {
     /// Identifier in the spec.
     pub name: Text,
@@ -112,6 +115,7 @@ pub struct SignalTable {
 
 /// The reaction of a constraint.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reaction {
     /// Name of the point at which it acts, or of the constraint that has no point.
     pub name: Text,
@@ -144,6 +148,7 @@ impl Reaction {
 
 /// A unilateral contact with a surface, which can push a body but not pull it.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contact {
     /// Name of its reaction.
     pub name: Text,
@@ -160,6 +165,7 @@ pub struct Contact {
 
 /// Names, units and sizes of a model, in the order of its vectors.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ModelInfo {
     /// Name of the mechanism.
     pub name: Text,

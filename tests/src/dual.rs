@@ -13,16 +13,11 @@ type D = Dual<f64, 1>;
 /// A, B and P of a program, each row by row.
 pub fn jacobians(program: &Program, point: &Point) -> [Vec<f64>; 3] {
     let arguments = &program.arguments;
-    let rates = &program
-        .functions
-        .iter()
-        .find(|f| f.kind == FunctionKind::Rates)
-        .unwrap()
-        .results[0]
-        .entries;
+    let function = program.function(FunctionKind::Rates).unwrap();
+    let (graph, rates) = (&*function.graph, &function.results[0].entries);
     let pi = program.info.parameters.iter().position(|p| p.name == "pi");
     assert!(pi.is_none(), "`pi` is reserved");
-    let mut values = vec![D::fixed(std::f64::consts::PI); program.graph.symbol_count()];
+    let mut values = vec![D::fixed(std::f64::consts::PI); graph.symbol_count()];
     let groups = [
         (&arguments.states, &point.x),
         (&arguments.inputs, &point.u),
@@ -34,11 +29,11 @@ pub fn jacobians(program: &Program, point: &Point) -> [Vec<f64>; 3] {
         }
     }
     values[arguments.time.0 as usize] = D::fixed(point.t);
-    let order = program.graph.in_order(rates);
+    let order = graph.in_order(rates);
     let mut column = |symbol: &SymbolId| -> Vec<f64> {
         let place = symbol.0 as usize;
         values[place].partials = [1.0];
-        let results = evaluate(&program.graph, &order, &values, rates);
+        let results = evaluate(graph, &order, &values, rates);
         values[place].partials = [0.0];
         results.iter().map(|d| d.partials[0]).collect()
     };

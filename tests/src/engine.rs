@@ -191,23 +191,23 @@ pub fn assert_schedules(program: &Program, points: &[Point]) {
         .collect();
     for point in points {
         let arguments = &program.arguments;
-        // The circle constant is a symbol that is no argument.
-        let mut values = vec![std::f64::consts::PI; program.graph.symbol_count()];
-        let symbols = [&arguments.states, &arguments.inputs, &arguments.parameters];
-        for (symbols, numbers) in symbols.into_iter().zip([&point.x, &point.u, &point.p]) {
-            for (symbol, &number) in symbols.iter().zip(numbers) {
+        let given = some_accelerations(&point.x, program.info.speeds);
+        for (function, schedule) in &schedules {
+            // The circle constant is a symbol that is no argument.
+            let mut values = vec![std::f64::consts::PI; function.graph.symbol_count()];
+            let symbols = [&arguments.states, &arguments.inputs, &arguments.parameters];
+            for (symbols, numbers) in symbols.into_iter().zip([&point.x, &point.u, &point.p]) {
+                for (symbol, &number) in symbols.iter().zip(numbers) {
+                    values[symbol.0 as usize] = number;
+                }
+            }
+            values[arguments.time.0 as usize] = point.t;
+            for (symbol, &number) in function.own.iter().zip(&given) {
                 values[symbol.0 as usize] = number;
             }
-        }
-        values[arguments.time.0 as usize] = point.t;
-        let given = some_accelerations(&point.x, program.info.speeds);
-        for (symbol, &number) in arguments.accelerations.iter().zip(&given) {
-            values[symbol.0 as usize] = number;
-        }
-        for (function, schedule) in &schedules {
             let results = interpret_weighted(schedule, point.at(), &given);
             for (array, scheduled) in function.results.iter().zip(results) {
-                let derived = evaluate(&program.graph, &values, &array.entries);
+                let derived = evaluate(&function.graph, &values, &array.entries);
                 let what = format!("{}, {:?}, {}", program.info.name, function.kind, array.name);
                 assert_close(&what, &scheduled, &derived, SCHEDULES, 1e-3);
             }

@@ -44,11 +44,9 @@ impl Modules {
         modules
     }
 
-    /// The files whose path below `src` starts so.
+    /// The files of a module: `folder.rs` and those in the folder.
     fn below<'a>(&'a self, folder: &'a str) -> impl Iterator<Item = &'a String> {
-        self.uses
-            .keys()
-            .filter(move |file| file.starts_with(folder))
+        self.uses.keys().filter(move |file| is_below(file, folder))
     }
 
     /// Sets of more than two files that all use each other, directly or not, each told as one way
@@ -61,7 +59,7 @@ impl Modules {
     pub fn knows(&self, folder: &str, known: &str) -> Vec<String> {
         let uses = |file: &String| {
             let used = self.uses[file].iter();
-            let told = used.filter(|(other, _)| other.starts_with(known));
+            let told = used.filter(|(other, _)| is_below(other, known));
             told.map(|(other, item)| format!("{file} → {item} → {other}"))
                 .collect::<Vec<_>>()
         };
@@ -71,7 +69,7 @@ impl Modules {
     /// The folders and files directly below `src` that files below `folder` use, without its own.
     pub fn neighbours(&self, folder: &str) -> BTreeSet<&str> {
         let used = self.below(folder).flat_map(|file| self.uses[file].keys());
-        let others = used.filter(|file| !file.starts_with(folder));
+        let others = used.filter(|file| !is_below(file, folder));
         others.map(|file| top(file)).collect()
     }
 
@@ -81,6 +79,12 @@ impl Modules {
         let files = self.foreign.iter().filter(|(_, names)| uses(names));
         files.map(|(file, _)| file.as_str()).collect()
     }
+}
+
+/// Whether a file is `folder.rs` or in the folder.
+fn is_below(file: &str, folder: &str) -> bool {
+    let rest = file.strip_prefix(folder);
+    rest.is_some_and(|rest| rest.starts_with(['/', '.']))
 }
 
 /// The first part of a path, without the ending of a file.

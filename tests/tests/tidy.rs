@@ -476,9 +476,13 @@ const LAYERS_OF_CODEGEN: &[(&str, &[&str])] = &[
     ("schedule", &["program", "symbolic", "tape"]),
     ("text", &["program", "schedule", "symbolic", "tape"]),
     ("emit", &["program", "schedule", "symbolic", "tape", "text"]),
-    ("model", &["program", "schedule", "tape"]),
-    ("jit", &["model", "program", "symbolic", "tape"]),
-    ("interpreted", &["model", "program", "tape"]),
+    (
+        "tapes",
+        &["compile", "mechanics", "program", "schedule", "tape"],
+    ),
+    ("model", &["program", "tape", "tapes"]),
+    ("jit", &["model", "program", "symbolic", "tape", "tapes"]),
+    ("interpreted", &["model", "program", "tape", "tapes"]),
 ];
 
 /// What the three formulations share with the derivation: the graph, the reading of expressions,

@@ -2,6 +2,7 @@
 
 mod apply;
 mod base;
+mod cache;
 mod check;
 mod completions;
 mod control;
@@ -42,6 +43,9 @@ use crate::failure::Error;
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// Neither read nor keep derived equations in the cache
+    #[arg(long, global = true)]
+    pub(crate) no_cache: bool,
 }
 
 /// The commands.
@@ -74,6 +78,7 @@ pub(crate) enum Command {
     Schema(schema::Schema),
     Watch(watch::Watch),
     Lsp(lsp::Lsp),
+    Cache(cache::Cache),
     Completions(completions::Completions),
     Man(man::Man),
 }
@@ -108,6 +113,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Schema(command) => command.run(),
         Command::Watch(command) => command.run(),
         Command::Lsp(lsp::Lsp {}) => lsp::run(),
+        Command::Cache(command) => command.run(),
         Command::Completions(command) => command.run(),
         Command::Man(command) => command.run(),
     }

@@ -55,9 +55,9 @@ pub(crate) fn model(
     made(|| Model::of(source, engine.map(Into::into)))
 }
 
-/// The equations with the adjoints that estimation needs.
-pub(crate) fn model_for_estimation(source: Source) -> Result<Model, Error> {
-    made(|| Model::for_estimation(source))
+/// The model of a source, derived in this process.
+pub(crate) fn model_of(source: Source) -> Result<Model, Error> {
+    made(|| Model::of(source, Some(Engine::Jit.into())))
 }
 
 fn made(make: impl FnOnce() -> Result<Model, appell::Error>) -> Result<Model, Error> {

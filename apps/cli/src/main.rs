@@ -20,6 +20,7 @@ mod summary;
 
 use std::process::ExitCode;
 
+use appell::cache::Cache;
 use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
 use clap_complete::CompleteEnv;
 use mimalloc::MiMalloc;
@@ -61,5 +62,8 @@ fn run(given: &ArgMatches) -> Result<(), failure::Error> {
     }
     // The arguments have been parsed already.
     let arguments = Arguments::from_arg_matches(given).unwrap_or_else(|error| error.exit());
+    if let Some(cache) = Cache::of_user().filter(|_| !arguments.no_cache) {
+        cache.use_from_now_on();
+    }
     commands::run(arguments.command)
 }

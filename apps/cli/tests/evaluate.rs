@@ -191,6 +191,38 @@ fn all_mistakes_of_a_file_are_told_with_their_places() {
 }
 
 #[test]
+fn the_wanted_quantities_are_those_of_all() {
+    let folder = Folder::new();
+    let cases = r#""cases": [{"state": {"omega": 2.0, "theta": 0.6}, "inputs": {"tau": 0.3}}]"#;
+    folder.write("all.json", &format!("{{{cases}}}"));
+    let wanted = r#""quantities": ["rates", "A", "potential_energy"]"#;
+    folder.write("some.json", &format!("{{{cases}, {wanted}}}"));
+    let case = |file: &str| {
+        let arguments = [
+            "evaluate", "pendulum", "--cases", file, "--json", "out.json",
+        ];
+        folder.done(&arguments);
+        folder.json("out.json")["cases"][0].clone()
+    };
+    let (all, some) = (case("all.json"), case("some.json"));
+    let keys: Vec<&String> = some.as_object().expect("an object").keys().collect();
+    assert_eq!(keys, ["rates", "A", "potential_energy"]);
+    for key in keys {
+        assert_eq!(some[key], all[key]);
+    }
+    folder.write(
+        "wrong.json",
+        &format!("{{{cases}, \"quantities\": [\"rates\",\n\"Jacobian\", 3]}}"),
+    );
+    let told = [
+        "there is no quantity `Jacobian`",
+        "wrong.json:2:1",
+        "wrong.json:2:13",
+    ];
+    folder.fails(3, &["evaluate", "pendulum", "--cases", "wrong.json"], &told);
+}
+
+#[test]
 fn a_key_stands_there_once() {
     let folder = Folder::new();
     folder.write(

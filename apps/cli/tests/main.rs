@@ -9,6 +9,7 @@ mod apply;
 mod backlash;
 mod bad_input;
 mod bad_recordings;
+mod cache;
 mod commands;
 mod control;
 mod cortex_m;

@@ -19,6 +19,17 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _appell {
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    #[expect(clippy::unnecessary_wraps, reason = "the form that the macro takes")]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        if let Some(cache) = appell::cache::Cache::of_user() {
+            cache.use_from_now_on();
+        }
+        Ok(())
+    }
+
     #[pymodule_export]
     use super::ensemble::Study;
     #[pymodule_export]

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use appell::diagnosis::{Library, Options, Report};
+use appell::engine::Engine;
 use appell::gap_report::GapReport;
 use appell::identification::{Answer, Begin};
 use appell::recording::Frame;
@@ -146,7 +147,7 @@ impl DataSet {
             rough: false,
         };
         let answer = watched(py, progress, move |watch| {
-            let model = appell::Model::for_estimation(appell::recording::source(&set))?;
+            let model = appell::Model::of(appell::recording::source(&set), Some(Engine::Jit))?;
             model.identify(&set, &options, |stage| watch.stage(stage))
         })?;
         Ok(Identified {

@@ -1,9 +1,14 @@
 """What the tests share."""
 
+import os
+
 import numpy as np
 import pytest
 
-import appell
+# Tests keep nothing in the cache of the user.
+os.environ["APPELL_CACHE"] = ""
+
+import appell  # noqa: E402
 
 
 @pytest.fixture(scope="session")

@@ -204,7 +204,7 @@ impl Job<'_> {
             let messages = findings.iter().map(|finding| finding.message.as_str());
             messages.collect::<Vec<_>>().join("; ")
         });
-        let model = Model::of_motions(source, derived).map_err(|error| error.to_string());
+        let model = Model::of_derivation(source, derived).map_err(|error| error.to_string());
         match films.and_then(|films| Ok((films, model?))) {
             Ok((films, model)) => {
                 let knobs = knobs(model.info());

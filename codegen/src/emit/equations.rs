@@ -19,7 +19,7 @@ const LARGEST: usize = 400;
 
 /// The sufficiently short equations as rustdoc lines, and the names in them.
 pub(super) fn equations(types: &Types<'_>, function: &Function) -> (Vec<String>, Vec<String>) {
-    let graph = &types.program.graph;
+    let graph = &*function.graph;
     let mut writer = Writer {
         graph,
         setter: Setter::new(ParametersFirst(&types.program.arguments.parameters)),

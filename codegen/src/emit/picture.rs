@@ -31,7 +31,7 @@ pub(super) fn picture(types: &Types<'_>, function: &Function) -> Vec<String> {
     let Layout::Matrix(rows, columns @ 1..=6) = array.layout else {
         return Vec::new();
     };
-    let graph = &types.program.graph;
+    let graph = &*function.graph;
     let mut setter =
         Setter::new(ParametersFirst(&types.program.arguments.parameters)).with_definitions_inline();
     let mut cells = Vec::with_capacity(array.entries.len());

@@ -3,8 +3,8 @@
 
 use super::variables::Variables;
 use super::xml::Element;
-use crate::program::{FunctionKind, Program};
-use crate::symbolic::{Expr, Function, Node, SymbolId};
+use crate::program::{Function, FunctionKind, Program};
+use crate::symbolic::{self, Expr, Graph, Node, SymbolId};
 
 /// The dependencies of a variable.
 #[derive(Debug, Default)]
@@ -35,9 +35,33 @@ fn unknown(name: &'static str, reference: usize) -> Element {
 /// Rows of the unknowns: value references, expressions, derivatives with respect to states and inputs.
 struct Rows<'a> {
     first: usize,
-    entries: &'a [Expr],
-    by_state: &'a [Expr],
-    by_input: &'a [Expr],
+    values: Entries<'a>,
+    by_state: Entries<'a>,
+    by_input: Entries<'a>,
+}
+
+/// Entries of an array of a function.
+#[derive(Clone, Copy)]
+struct Entries<'a>(Option<(&'a Function, &'a [Expr])>);
+
+impl<'a> Entries<'a> {
+    fn of(program: &'a Program, kind: FunctionKind, array: usize) -> Self {
+        let function = program.function(kind);
+        Self(function.and_then(|function| {
+            let array = function.results.get(array)?;
+            Some((function, array.entries.as_slice()))
+        }))
+    }
+
+    fn len(self) -> usize {
+        self.0.map_or(0, |(_, entries)| entries.len())
+    }
+
+    /// An entry with its graph.
+    fn get(self, index: usize) -> Option<(&'a Graph, Expr)> {
+        let (function, entries) = self.0?;
+        Some((&function.graph, *entries.get(index)?))
+    }
 }
 
 struct Structure<'a> {
@@ -45,56 +69,60 @@ struct Structure<'a> {
     variables: &'a Variables,
 }
 
-impl Structure<'_> {
-    /// Whether an expression is discontinuous: it then depends on its conditions, which derivatives do not
-    /// show.
-    fn jumps(&self, expr: Expr) -> bool {
-        let graph = &self.program.graph;
-        let all = graph.in_order(&[expr]);
-        all.into_iter().any(|part| {
-            matches!(
-                graph.node(part),
-                Node::Choice { .. } | Node::Function(Function::Sign, _)
-            )
-        })
-    }
+/// Whether an expression is discontinuous: it then depends on its conditions, which derivatives do not show.
+fn jumps(graph: &Graph, expr: Expr) -> bool {
+    let all = graph.in_order(&[expr]);
+    all.into_iter().any(|part| {
+        matches!(
+            graph.node(part),
+            Node::Choice { .. } | Node::Function(symbolic::Function::Sign, _)
+        )
+    })
+}
 
-    /// The kind of an expression's dependency on a symbol, given the derivative.
-    fn kind(&self, expr: Expr, by: SymbolId, derivative: Option<&Expr>) -> Option<&'static str> {
-        let graph = &self.program.graph;
-        let number = derivative.and_then(|&derivative| graph.as_number(derivative));
-        if self.jumps(expr) || derivative.is_none() {
-            return graph.mentions(expr, &[by]).then_some("dependent");
-        }
-        match number {
+/// The kind of a value's dependency on a symbol, given the derivative.
+fn kind(
+    (graph, value): (&Graph, Expr),
+    by: SymbolId,
+    derivative: Option<(&Graph, Expr)>,
+) -> Option<&'static str> {
+    match derivative {
+        Some((of, derivative)) if !jumps(graph, value) => match of.as_number(derivative) {
             Some(zero) if zero.is_zero() => None,
             Some(_) => Some("constant"),
             None => Some("dependent"),
-        }
+        },
+        _ => graph.mentions(value, &[by]).then_some("dependent"),
     }
+}
 
+impl Structure<'_> {
     fn of(&self, rows: &Rows<'_>, index: usize) -> Dependencies {
         let (program, variables) = (self.program, self.variables);
-        let (arguments, expr) = (&program.arguments, rows.entries[index]);
+        let arguments = &program.arguments;
         let mut found = Dependencies::default();
+        let Some(value) = rows.values.get(index) else {
+            return found;
+        };
         for (first, symbols, derivatives) in [
             (variables.states, arguments.states.as_slice(), rows.by_state),
             (variables.inputs, arguments.inputs.as_slice(), rows.by_input),
         ] {
-            let row = derivatives.get(index * symbols.len()..).unwrap_or_default();
             for (k, &symbol) in symbols.iter().enumerate() {
                 let is_input = first == variables.inputs;
                 if is_input && k >= program.info.declared_inputs {
                     break;
                 }
-                if let Some(kind) = self.kind(expr, symbol, row.get(k)) {
+                let derivative = derivatives.get(index * symbols.len() + k);
+                if let Some(kind) = kind(value, symbol, derivative) {
                     found.add(first + k, kind);
                 }
             }
         }
         let signals = &arguments.inputs[program.info.declared_inputs..];
         let of_time = [signals, &[arguments.time]].concat();
-        if program.graph.mentions(expr, &of_time) {
+        let (graph, value) = value;
+        if graph.mentions(value, &of_time) {
             found.add(Variables::TIME, "dependent");
         }
         found
@@ -109,8 +137,8 @@ impl Structure<'_> {
         }
         let mut found = self.of(rows, index);
         for (k, &parameter) in self.program.arguments.parameters.iter().enumerate() {
-            let expr = rows.entries[index];
-            if self.program.graph.mentions(expr, &[parameter]) {
+            let value = rows.values.get(index);
+            if value.is_some_and(|(graph, value)| graph.mentions(value, &[parameter])) {
                 found.add(self.variables.parameters + k, "dependent");
             }
         }
@@ -120,25 +148,21 @@ impl Structure<'_> {
 
 /// The element `ModelStructure`.
 pub(super) fn structure(program: &Program, variables: &Variables) -> Element {
-    let entries = |kind: FunctionKind, array: usize| {
-        let results = program.function(kind).map(|function| &function.results);
-        let array = results.and_then(|results| results.get(array));
-        array.map_or(&[][..], |array| array.entries.as_slice())
-    };
+    let entries = |kind, array| Entries::of(program, kind, array);
     let structure = Structure { program, variables };
     let rates = Rows {
         first: variables.rates,
-        entries: entries(FunctionKind::Rates, 0),
+        values: entries(FunctionKind::Rates, 0),
         by_state: entries(FunctionKind::Jacobians, 1),
         by_input: entries(FunctionKind::Jacobians, 2),
     };
     let outputs = Rows {
         first: variables.outputs,
-        entries: entries(FunctionKind::Outputs, 0),
+        values: entries(FunctionKind::Outputs, 0),
         by_state: entries(FunctionKind::OutputJacobians, 1),
         by_input: entries(FunctionKind::OutputJacobians, 2),
     };
-    let all = |rows: &Rows<'_>| 0..rows.entries.len();
+    let all = |rows: &Rows<'_>| 0..rows.values.len();
     let states = (variables.states..variables.rates).map(|state| {
         let mut itself = Dependencies::default();
         itself.add(state, "constant");

@@ -39,10 +39,11 @@ impl Variables {
             .iter()
             .any(|quantity| quantity.name == "time");
         let constraints = program.function(FunctionKind::PositionConstraints);
-        let residuals = constraints.map_or(&[][..], |function| &function.results[0].entries);
         let fixed = program.arguments.parameters.iter().map(|&parameter| {
-            let mut residuals = residuals.iter();
-            residuals.any(|&residual| program.graph.mentions(residual, &[parameter]))
+            constraints.is_some_and(|function| {
+                let mut residuals = function.results[0].entries.iter();
+                residuals.any(|&residual| function.graph.mentions(residual, &[parameter]))
+            })
         });
         Self {
             time: if is_taken { "t" } else { "time" },

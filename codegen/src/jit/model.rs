@@ -8,15 +8,16 @@ use appell_runtime::model::At;
 use super::host::Use;
 use super::on_demand::OnDemand;
 use super::{JitError, Sizes};
-use crate::model::{Engine, ProgramModel, tape_of};
-use crate::program::{FunctionKind, Program};
+use crate::model::{Engine, ProgramModel};
+use crate::program::FunctionKind;
 use crate::symbolic::Rational;
 use crate::tape::Tape;
+use crate::tapes::Tapes;
 
 /// A model compiled in this process.
 ///
-/// The rates are compiled immediately, every other function at its first use: most users need few of them, and
-/// finding a short tape for all derivatives takes longer than compiling it. Concurrent calls of the same function
+/// The rates are compiled immediately, every other function is derived and compiled at its first use: most users need
+/// few of them, and finding a short tape for all derivatives takes longer than compiling it. Concurrent calls of the same function
 /// wait for its compilation. Functions that are too long to be compiled are interpreted with the same results;
 /// [`Self::interpreted`] lists these.
 ///
@@ -65,11 +66,10 @@ impl Whole {
     }
 
     /// The tape of a function of the specialised model.
-    fn tape(&self, kind: FunctionKind) -> Tape {
-        let Self { model, zeros, .. } = self;
-        let is_zero = |index: usize| zeros.binary_search(&index).is_ok();
-        let mut tape = model.engine.own(&model.program, kind).clone();
-        let parameters = model.engine.sizes.parameters.max(1);
+    fn tape(&self, kind: FunctionKind, tape: &Tape) -> Tape {
+        let is_zero = |index: usize| self.zeros.binary_search(&index).is_ok();
+        let mut tape = tape.clone();
+        let parameters = self.model.engine.sizes.parameters.max(1);
         let by_parameters = matches!(
             kind,
             FunctionKind::ParameterJacobian | FunctionKind::Adjoint | FunctionKind::OutputAdjoint
@@ -88,22 +88,23 @@ impl Whole {
 }
 
 impl ProgramModel<Jit> {
-    /// Compiles the rates of a program and prepares its other functions.
-    pub fn new(program: &Program) -> Result<Self, JitError> {
+    /// Compiles the rates of a program or a derivation and prepares its other functions.
+    pub fn new(functions: impl Into<Tapes>) -> Result<Self, JitError> {
+        Self::over(Arc::new(functions.into()))
+    }
+
+    /// The same with functions that others use as well.
+    pub fn over(tapes: Arc<Tapes>) -> Result<Self, JitError> {
         let kind = FunctionKind::Rates;
-        if program.function(kind).is_none() {
-            return Err(JitError::MissingFunction { kind });
-        }
         let engine = Jit {
-            sizes: Sizes::from(&program.info),
+            sizes: Sizes::from(tapes.info()),
             parts: [const { OnDemand::new(Use::Lasting) }; FunctionKind::COUNT],
             whole: None,
         };
-        let model = Self::of(Arc::new(program.clone()), engine);
         // An unsupported processor is detected here and not during a simulation.
-        let engine = &model.engine;
-        engine.parts[kind as usize].compile(engine.own(program, kind), engine.sizes)?;
-        Ok(model)
+        let rates = tapes.get(kind).ok_or(JitError::MissingFunction { kind })?;
+        engine.parts[kind as usize].compile(rates, engine.sizes)?;
+        Ok(Self::of(tapes, engine))
     }
 
     /// The same model, specialised for zero parameters. Derivatives with respect to these are omitted and read as
@@ -115,40 +116,31 @@ impl ProgramModel<Jit> {
             parts: [const { OnDemand::new(Use::Brief) }; FunctionKind::COUNT],
             whole: Some(Whole::of(self, zeros.to_vec())),
         };
-        Self::of(self.program.clone(), engine)
-    }
-
-    /// Compiles all functions now instead of at their first use.
-    pub fn compile_all(&self) {
-        for kind in FunctionKind::ALL {
-            let tape = || self.engine.own(&self.program, kind);
-            self.engine.parts[kind as usize].ready(tape, self.engine.sizes);
-        }
+        Self::of(self.tapes.clone(), engine)
     }
 
     /// The functions used so far that are interpreted, with the reason.
     pub fn interpreted(&self) -> impl Iterator<Item = (FunctionKind, &JitError)> {
         FunctionKind::ALL
             .into_iter()
-            .zip(&self.engine.parts)
-            .filter_map(|(kind, part)| Some((kind, part.reason()?)))
+            .filter_map(|kind| Some((kind, self.engine.parts[kind as usize].reason()?)))
     }
 }
 
 impl Jit {
-    /// The tape of the specialised model, if it is one.
-    fn own(&self, program: &Program, kind: FunctionKind) -> &Tape {
-        self.parts[kind as usize].tape(|| match &self.whole {
-            Some(whole) => whole.tape(kind),
-            None => tape_of(program, kind),
-        })
-    }
-
     /// The engine to be used at given parameters.
     fn at(&self, p: &[f64]) -> &Self {
         match &self.whole {
             Some(whole) if whole.is_needed(p) => &whole.model.engine,
             _ => self,
+        }
+    }
+
+    /// The tape of the specialised model, if it is one.
+    fn own<'t>(&'t self, kind: FunctionKind, tape: &'t Tape) -> &'t Tape {
+        match &self.whole {
+            Some(whole) => self.parts[kind as usize].tape(|| whole.tape(kind, tape)),
+            None => tape,
         }
     }
 }
@@ -157,20 +149,19 @@ impl Engine for Jit {
     #[inline]
     fn call<const N: usize>(
         &self,
-        program: &Program,
         kind: FunctionKind,
+        tape: &Tape,
         at: At<'_>,
         own: &[f64],
         out: [&mut [f64]; N],
     ) {
         let engine = self.at(at.p);
-        let tape = || engine.own(program, kind);
         engine.parts[kind as usize]
-            .ready(tape, engine.sizes)
+            .ready(|| engine.own(kind, tape), engine.sizes)
             .call(at, own, out);
     }
 
-    fn tape(&self, program: &Program, kind: FunctionKind, p: &[f64]) -> &Tape {
-        self.at(p).own(program, kind)
+    fn tape<'t>(&'t self, kind: FunctionKind, tape: &'t Tape, p: &[f64]) -> &'t Tape {
+        self.at(p).own(kind, tape)
     }
 }

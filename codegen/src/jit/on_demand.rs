@@ -13,6 +13,7 @@ use crate::tape::{Tape, interpret_weighted};
 /// A function, compiled at its first use.
 pub(super) struct OnDemand {
     of: Use,
+    /// The tape, if it is not that of the model.
     tape: OnceLock<Tape>,
     ready: OnceLock<Ready>,
 }

@@ -64,13 +64,13 @@ impl Derivation {
             paired("Gamma", &info.outputs, &info.states),
             paired("Delta", &info.outputs, &info.inputs),
         ];
-        self.symbols.output_weights = self.new_symbols(&names.concat());
+        self.symbols.weights = self.new_symbols(&names.concat());
         let arrays = self.output_jacobians(mechanism, info)?;
         let weighted: Vec<Expr> = arrays.into_iter().flat_map(|array| array.entries).collect();
         if weighted.is_empty() {
             return Ok(Vec::new());
         }
-        let weights = self.symbols.output_weights.clone();
+        let weights = self.symbols.weights.clone();
         Ok(self.gradient_arrays(info, &weighted, &weights))
     }
 

@@ -4,8 +4,8 @@ use appell_runtime::model::ModelInfo;
 
 use super::Derivation;
 use super::symbols::{Symbols, ids};
-use crate::program::Arguments;
-use crate::symbolic::Expr;
+use crate::program::{Arguments, FunctionKind, Own};
+use crate::symbolic::{Expr, SymbolId};
 
 /// The symbols of the functions' arguments.
 pub(super) fn function_arguments(derivation: &Derivation, info: &ModelInfo) -> Arguments {
@@ -19,10 +19,20 @@ pub(super) fn function_arguments(derivation: &Derivation, info: &ModelInfo) -> A
         ),
         inputs: ids(graph, &input_symbols(symbols, info)),
         parameters: ids(graph, &symbols.parameters),
-        weights: ids(graph, &symbols.weights),
-        output_weights: ids(graph, &symbols.output_weights),
-        accelerations: ids(graph, &symbols.accelerations),
         pi: graph.as_symbol(symbols.pi),
+    }
+}
+
+impl Derivation {
+    /// Symbols of the argument that only some functions have.
+    pub(super) fn own_symbols(&self, kind: FunctionKind) -> Vec<SymbolId> {
+        let symbols = &self.symbols;
+        let own = match kind.takes() {
+            Some(Own::Weights | Own::OutputWeights) => &symbols.weights,
+            Some(Own::Accelerations) => &symbols.accelerations,
+            None => return Vec::new(),
+        };
+        ids(&self.algebra.graph, own)
     }
 }
 

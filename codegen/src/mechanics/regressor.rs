@@ -6,6 +6,8 @@
 //! and J at c = 0, and ∂²/∂m ∂c there for the first moments. Columns for load parameters that enter linearly in
 //! addition, such as coefficients of friction, follow; r is the remainder.
 
+use std::sync::Arc;
+
 use appell_spec::expr::{Expr as SpecExpr, ExprKind, Quantity};
 use appell_spec::mechanism::{
     Body, BodyId, Label, Mechanism, Parameter, ParameterId, Point, PointId,
@@ -74,17 +76,17 @@ pub fn regressor(mechanism: &Mechanism) -> Outcome<Regressor> {
     let function = Function::new(FunctionKind::Regressor, results);
     let bodies = derivation.bodies.clone();
     let function = derivation.explained(mechanism, function, &bodies);
+    let own = derivation.own_symbols(FunctionKind::Regressor);
     let mut arguments = function_arguments(&derivation, &info);
     arguments.parameters.truncate(info.parameter_len());
     let program = Program {
         info,
         systems: Vec::new(),
         file: mechanism.file.clone(),
-        graph: derivation.algebra.graph,
         arguments,
         dependent: derivation.positions.dependent,
-        hints: Vec::new(),
-        functions: vec![function],
+        hints: Arc::default(),
+        functions: vec![function.over(Arc::new(derivation.algebra.graph), own)],
     };
     Ok(Regressor {
         program,

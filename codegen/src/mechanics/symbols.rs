@@ -35,10 +35,8 @@ pub struct Symbols {
     pub time: Expr,
     /// The circle constant.
     pub pi: Expr,
-    /// Weights of the adjoint of the rates, if requested.
+    /// Weights of an adjoint, while it is derived.
     pub weights: Vec<Expr>,
-    /// Weights of the adjoint of the outputs, if requested.
-    pub output_weights: Vec<Expr>,
 }
 
 impl Symbols {
@@ -89,7 +87,6 @@ impl Symbols {
             time,
             pi,
             weights: Vec::new(),
-            output_weights: Vec::new(),
         }
     }
 }

@@ -9,8 +9,6 @@ enum Purpose {
     Estimation,
     /// Every model.
     Standard,
-    /// Simulation.
-    Motions,
 }
 
 /// A row of the table.
@@ -50,7 +48,7 @@ functions! {
     Kinematics = "kinematics" "Kinematics" Standard []
         "Generalised velocities q̇ of pseudo-velocities and coordinates.";
     /// S at the actual accelerations: results `total`, then one per body.
-    AccelerationEnergy = "acceleration_energy" "AccelerationEnergy" Motions ["total"]
+    AccelerationEnergy = "acceleration_energy" "AccelerationEnergy" Standard ["total"]
         "Acceleration energy S (Gibbs function) at the actual motion, without the terms ½ ω²(ω·Jω) of \
          the bodies, which no pseudo-acceleration enters.";
     /// M: result `mass_matrix`.
@@ -60,13 +58,13 @@ functions! {
     Bias = "bias" "Bias" Standard []
         "Bias b: ∂S/∂ω̇ at zero pseudo-accelerations.";
     /// M and b, sharing subexpressions: results `mass_matrix`, `bias`.
-    MassMatrixAndBias = "mass_matrix_and_bias" "MassMatrixAndBias" Motions ["mass_matrix", "bias"]
+    MassMatrixAndBias = "mass_matrix_and_bias" "MassMatrixAndBias" Standard ["mass_matrix", "bias"]
         "Mass matrix M and bias b together: what both need is computed once.";
     /// Π: result `generalized_forces`.
-    GeneralizedForces = "generalized_forces" "GeneralizedForces" Motions ["generalized_forces"]
+    GeneralizedForces = "generalized_forces" "GeneralizedForces" Standard ["generalized_forces"]
         "Pseudo-forces Π (generalised forces): virtual power of the loads per pseudo-velocity.";
     /// ẋ: result `rates`.
-    Rates = "rates" "Rates" Motions ["rates"]
+    Rates = "rates" "Rates" Standard ["rates"]
         "Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.";
     /// ẋ, A, B: results `rates`, `a`, `b`.
     Jacobians = "jacobians" "Jacobians" Standard ["rates", "a", "b"]
@@ -75,35 +73,35 @@ functions! {
     ParameterJacobian = "parameter_jacobian" "ParameterJacobian" Standard ["p"]
         "P = ∂ẋ/∂p.";
     /// Results `kinetic`, `potential`, `power`.
-    Energies = "energies" "Energies" Motions ["kinetic", "potential", "power"]
+    Energies = "energies" "Energies" Standard ["kinetic", "potential", "power"]
         "Energies and power.";
     /// Constraint rows at the generalised velocities: result `residual`.
     ConstraintResidual = "constraint_residual" "ConstraintResidual" Standard ["residual"]
         "Constraint rows at the generalised velocities of the state: zero up to rounding.";
     /// Reactions in the ground: result `forces`, three columns.
-    ConstraintForces = "constraint_forces" "ConstraintForces" Motions ["forces"]
+    ConstraintForces = "constraint_forces" "ConstraintForces" Standard ["forces"]
         "Reactions: forces on what is held, in N.";
     /// Outputs of the spec: result `outputs`.
-    Outputs = "outputs" "OutputArrays" Motions ["outputs"]
+    Outputs = "outputs" "OutputArrays" Standard ["outputs"]
         "Outputs of the spec.";
     /// Switching values that depend on time alone, if any: result `switches`.
-    Switches = "switches" "Switches" Motions ["switches"]
+    Switches = "switches" "Switches" Standard ["switches"]
         "Switching functions of time alone: 1 where a relation holds, 0 elsewhere; or a sign.";
     /// Functions of time alone, if any: results `functions`, whose signs are the switches, and `shapes`, which
     /// vary continuously.
-    TimeFunctions = "time_functions" "TimeFunctions" Motions ["functions", "shapes"]
+    TimeFunctions = "time_functions" "TimeFunctions" Standard ["functions", "shapes"]
         "Functions of time alone: those whose signs the switches are, and those that rise and fall.";
     /// Switching functions that depend on the state, if any: result `crossings`.
-    Crossings = "crossings" "Crossings" Motions ["crossings", "pulses"]
+    Crossings = "crossings" "Crossings" Standard ["crossings", "pulses"]
         "Functions at whose zeros the state switches the equations, and those that rise and fall with it.";
     /// Position constraints, if any: results `residual`, and `jacobian` with respect to the coordinates.
-    PositionConstraints = "position_constraints" "PositionConstraints" Motions ["residual", "jacobian"]
+    PositionConstraints = "position_constraints" "PositionConstraints" Standard ["residual", "jacobian"]
         "Position constraints f(q, t) = 0 and their Jacobian with respect to the coordinates.";
     /// Surfaces at the contacts, unless they are constant: results `normals`, three columns, and `friction`.
-    Contacts = "contacts" "Contacts" Motions ["normals", "friction"]
+    Contacts = "contacts" "Contacts" Standard ["normals", "friction"]
         "Surfaces at the contacts: normals in the ground, coefficients of friction.";
     /// Systems that are solved with pivoting, if any: result `matrices`, one after the other.
-    Systems = "systems" "Systems" Motions ["matrices"]
+    Systems = "systems" "Systems" Standard ["matrices"]
         "Matrices of the systems that are solved with pivoting, row by row.";
     /// M ω̇ + b − Π for given ω̇: result `demand`.
     InverseDynamics = "inverse_dynamics" "InverseDynamics" Standard ["demand"]
@@ -162,10 +160,6 @@ impl FunctionKind {
     /// The functions of every model. The others, required for estimation, are as long as all of these together.
     pub const STANDARD: [Self; 21] = those(Purpose::Standard);
 
-    /// The functions required for simulation: [`Self::STANDARD`] without derivatives and results that other
-    /// functions return as well.
-    pub const OF_MOTIONS: [Self; 13] = those(Purpose::Motions);
-
     /// [`Self::STANDARD`] for a mechanism with a number of parameters: with more than 64, derivatives with
     /// respect to them are omitted unless requested.
     pub fn standard(parameters: usize) -> Vec<Self> {
@@ -173,6 +167,23 @@ impl FunctionKind {
         let is_made =
             |kind: &Self| parameters <= MOST_PARAMETERS || *kind != Self::ParameterJacobian;
         Self::STANDARD.into_iter().filter(is_made).collect()
+    }
+
+    /// Whether a mechanism may have no such results.
+    pub fn may_lack(self) -> bool {
+        matches!(
+            self,
+            Self::Outputs
+                | Self::Switches
+                | Self::TimeFunctions
+                | Self::Crossings
+                | Self::PositionConstraints
+                | Self::Contacts
+                | Self::Systems
+                | Self::OutputJacobians
+                | Self::OutputAdjoint
+                | Self::Regressor
+        )
     }
 
     /// The argument in addition to time, parameters, state and inputs.

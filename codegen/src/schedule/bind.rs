@@ -58,6 +58,7 @@ struct Built {
 
 struct Binding<'a> {
     program: &'a Program,
+    function: &'a Function,
     dag: &'a Dag,
     arguments: ArgumentNames,
     outline: Outline<'a>,
@@ -84,7 +85,7 @@ struct Binding<'a> {
 impl<'a> Binding<'a> {
     fn new(
         program: &'a Program,
-        function: &Function,
+        function: &'a Function,
         dag: &'a Dag,
         hints: Vec<Option<(usize, bool)>>,
     ) -> Self {
@@ -98,7 +99,7 @@ impl<'a> Binding<'a> {
                 names.reserve(name);
             }
         }
-        let outline = Outline::new(program, function, dag);
+        let outline = Outline::new(function, dag);
         for &id in &outline.order {
             if let Some(value) = dag.as_number(id) {
                 names.reserve(&arguments.constant(value));
@@ -110,6 +111,7 @@ impl<'a> Binding<'a> {
         }
         Self {
             program,
+            function,
             dag,
             minus: choose_signs(dag, &outline.order),
             outline,

@@ -3,7 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::dag::{Dag, Item, Name, Op, System};
-use crate::program::{Function, Program};
+use crate::program::{Function, Own, Program};
 use crate::symbolic::{Expr, Graph, Node, Rational, SymbolId};
 use crate::tape::Argument;
 
@@ -19,10 +19,10 @@ pub(super) fn lower(program: &Program, function: &Function) -> Dag {
         .iter()
         .flat_map(|array| array.entries.iter().copied())
         .collect();
-    let graph = &program.graph;
+    let graph = &*function.graph;
     let mut lowering = Lowering {
         graph,
-        arguments: arguments(program),
+        arguments: arguments(program, function),
         pi: program.arguments.pi,
         kept: kept(graph, function),
         dag: Dag::default(),
@@ -38,12 +38,12 @@ pub(super) fn lower(program: &Program, function: &Function) -> Dag {
     dag
 }
 
-/// The hint values of the program, whether or not a function computes them.
-pub(super) fn hints(program: &Program) -> Dag {
-    let graph = &program.graph;
+/// The hint values of the program, whether or not the function computes them.
+pub(super) fn hints(program: &Program, function: &Function) -> Dag {
+    let graph = &*function.graph;
     let mut lowering = Lowering {
         graph,
-        arguments: arguments(program),
+        arguments: arguments(program, function),
         pi: program.arguments.pi,
         kept: FxHashSet::default(),
         dag: Dag::default(),
@@ -78,7 +78,7 @@ pub(super) fn definition(graph: &Graph, expr: Expr) -> Option<u32> {
 }
 
 /// The argument behind each symbol.
-fn arguments(program: &Program) -> FxHashMap<SymbolId, Argument> {
+fn arguments(program: &Program, function: &Function) -> FxHashMap<SymbolId, Argument> {
     fn numbered(
         symbols: &[SymbolId],
         argument: fn(u32) -> Argument,
@@ -89,13 +89,16 @@ fn arguments(program: &Program) -> FxHashMap<SymbolId, Argument> {
             .map(move |(&symbol, i)| (symbol, argument(i)))
     }
     let of = &program.arguments;
+    let own = match function.kind.takes() {
+        Some(Own::Weights) => Argument::Weight,
+        Some(Own::OutputWeights) => Argument::OutputWeight,
+        Some(Own::Accelerations) | None => Argument::Acceleration,
+    };
     std::iter::once((of.time, Argument::Time))
         .chain(numbered(&of.states, Argument::State))
         .chain(numbered(&of.inputs, Argument::Input))
         .chain(numbered(&of.parameters, Argument::Parameter))
-        .chain(numbered(&of.weights, Argument::Weight))
-        .chain(numbered(&of.output_weights, Argument::OutputWeight))
-        .chain(numbered(&of.accelerations, Argument::Acceleration))
+        .chain(numbered(&function.own, own))
         .collect()
 }
 

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
-use crate::program::Program;
+use crate::program::{FunctionKind, Program};
 use crate::symbolic::{Function, Rational};
 use crate::tape::Argument;
 
@@ -90,11 +90,11 @@ impl ArgumentNames {
         let (states, inputs) = (all(&info.states), all(&info.inputs));
         let parameters = all(&info.parameters);
         let time = names.fresh("t");
-        let symbols = &program.arguments;
-        let [weights, output_weights] = [&symbols.weights, &symbols.output_weights].map(|list| {
-            list.iter()
-                .map(|&w| names.fresh(program.graph.symbol_name(w)))
-                .collect()
+        let adjoints = [FunctionKind::Adjoint, FunctionKind::OutputAdjoint];
+        let [weights, output_weights] = adjoints.map(|kind| {
+            let functions = program.function(kind).into_iter();
+            let weights = functions.flat_map(|f| f.own.iter().map(|&w| f.graph.symbol_name(w)));
+            weights.map(|weight| names.fresh(weight)).collect()
         });
         let speeds = states.iter().take(info.speeds);
         let accelerations = speeds

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::dag::{Dag, Id, Item, Op};
 use super::lower::definition;
-use crate::program::{Function, Program};
+use crate::program::Function;
 use crate::symbolic::Function as Elementary;
 use crate::tape::Argument;
 
@@ -34,7 +34,7 @@ pub(super) struct Outline<'a> {
 
 impl<'a> Outline<'a> {
     /// The layout of a function.
-    pub(super) fn new(program: &Program, function: &Function, dag: &'a Dag) -> Self {
+    pub(super) fn new(function: &Function, dag: &'a Dag) -> Self {
         let order = dag.order();
         let mut outline = Self {
             dag,
@@ -50,11 +50,11 @@ impl<'a> Outline<'a> {
             order,
         };
         outline.label_results(function);
-        outline.stages(program, function);
+        outline.stages(function);
         outline.pair_sines();
         outline.choose_bound();
         outline.find_feeds();
-        outline.find_groups(program, function);
+        outline.find_groups(function);
         outline
     }
 
@@ -75,7 +75,7 @@ impl<'a> Outline<'a> {
     }
 
     /// Binds the displayed intermediate values.
-    fn stages(&mut self, program: &Program, function: &Function) {
+    fn stages(&mut self, function: &Function) {
         let mut kept = FxHashMap::default();
         for &id in &self.order {
             if let Op::Kept(inner) = self.dag.op(id) {
@@ -91,7 +91,7 @@ impl<'a> Outline<'a> {
             let definitions = stage
                 .values
                 .iter()
-                .filter_map(|&value| definition(&program.graph, value));
+                .filter_map(|&value| definition(&function.graph, value));
             let ids = definitions.filter_map(|definition| kept.get(&definition).copied());
             self.stages.push((stage.title.clone(), ids.collect()));
         }
@@ -169,12 +169,12 @@ impl<'a> Outline<'a> {
     }
 
     /// Assigns nodes to the groups of the function.
-    fn find_groups(&mut self, program: &Program, function: &Function) {
+    fn find_groups(&mut self, function: &Function) {
         for &id in &self.order {
             let Some(name) = self.dag.names[id.index()] else {
                 continue;
             };
-            let name = &program.graph.definition(name.definition).name;
+            let name = &function.graph.definition(name.definition).name;
             if self.bound[id.index()] {
                 self.groups[id.index()] = function.groups.iter().position(|g| g.holds(name));
             }

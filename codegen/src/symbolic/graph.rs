@@ -294,6 +294,15 @@ impl Graph {
             .any(|&symbol| self.sets.holds(support, symbol))
     }
 
+    /// Whether a node is a part of another one.
+    pub fn has_as_part(&self, expr: Expr) -> bool {
+        let mut found = false;
+        for whole in (0..).map(Expr).take(self.nodes.len()) {
+            self.for_each_part(whole, |part| found |= part == expr);
+        }
+        found
+    }
+
     /// Whether an expression may contain a subexpression with this support.
     pub(super) fn may_hold(&self, expr: Expr, part: Support) -> bool {
         self.sets.contains(self.support(expr), part)

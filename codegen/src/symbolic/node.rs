@@ -71,6 +71,7 @@ pub struct Factor {
 /// Functions of one argument. The tangent is a quotient of sine and cosine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[expect(missing_docs, reason = "each variant is the function of that name")]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub enum Function {
     Sin,
     Cos,
@@ -89,6 +90,7 @@ pub enum Function {
 
 /// Comparisons of a choice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub enum Relation {
     /// `<`
     Less,

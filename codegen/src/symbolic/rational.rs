@@ -18,9 +18,11 @@ const KEPT_BITS: u64 = 128;
 /// `Big` is used only where `Small` cannot represent the value, so equal numbers are equal variants and the
 /// derived comparisons are those of the numbers.
 #[derive(Clone, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rational(Repr);
 
 #[derive(Clone, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]
 enum Repr {
     Small(Ratio<i64>),
     Big(Box<BigRational>),

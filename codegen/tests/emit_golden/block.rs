@@ -664,8 +664,8 @@ pub fn constraint_forces<T: Real>(
 /// Outputs of the spec.
 ///
 /// ```text
-/// n = m g cos β − m a_C,x sin β + m a_C,z cos β + F sin β
-/// across = m g cos β − m a_C,x sin β + m a_C,z cos β + F sin β
+/// n = m g cos β + m a_C,z cos β − m a_C,x sin β + F sin β
+/// across = m g cos β + m a_C,z cos β − m a_C,x sin β + F sin β
 /// rubbing = −μ normal_force_ground tanh(v/eps)
 /// pulling = k s
 /// pushing = F cos β

@@ -5,6 +5,8 @@
     reason = "tests may panic"
 )]
 
+use std::sync::Arc;
+
 use appell_codegen::emit::Options;
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program, Space};
 use appell_codegen::symbolic::{
@@ -52,6 +54,7 @@ pub(crate) fn quantity(name: &str, about: &str, unit: &str, value: f64) -> Quant
 /// A program whose functions are still to be written.
 pub(crate) struct Sketch {
     pub(crate) program: Program,
+    graph: Graph,
     symbols: Vec<(String, Expr)>,
 }
 
@@ -81,9 +84,6 @@ impl Sketch {
             inputs: symbols(&inputs),
             parameters: symbols(&parameters),
             time: symbols(&[quantity("t", "Time.", "s", 0.0)])[0],
-            weights: Vec::new(),
-            output_weights: Vec::new(),
-            accelerations: Vec::new(),
             pi: None,
         };
         let info = ModelInfo {
@@ -107,21 +107,21 @@ impl Sketch {
         let program = Program {
             info,
             file,
-            graph,
             arguments,
             dependent: Vec::new(),
             systems: Vec::new(),
-            hints: Vec::new(),
+            hints: Arc::default(),
             functions: Vec::new(),
         };
         Self {
             program,
+            graph,
             symbols: all,
         }
     }
 
     pub(crate) fn graph(&mut self) -> &mut Graph {
-        &mut self.program.graph
+        &mut self.graph
     }
 
     /// The symbol of a state, input or parameter.
@@ -143,7 +143,9 @@ impl Sketch {
     }
 
     fn add(&mut self, kind: FunctionKind, results: Vec<Array>) {
-        self.program.functions.push(Function::new(kind, results));
+        let graph = Arc::new(self.graph.clone());
+        let function = Function::new(kind, results).over(graph, Vec::new());
+        self.program.functions.push(function);
         self.program.functions.sort_by_key(|function| function.kind);
     }
 
@@ -155,7 +157,7 @@ impl Sketch {
             for (j, &symbol) in symbols.iter().enumerate() {
                 let mut by = Derivatives::with_respect_to(symbol);
                 for (i, &rate) in rates.iter().enumerate() {
-                    matrix[i * symbols.len() + j] = by.of(&mut self.program.graph, rate);
+                    matrix[i * symbols.len() + j] = by.of(&mut self.graph, rate);
                 }
             }
             matrix

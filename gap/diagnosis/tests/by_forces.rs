@@ -7,8 +7,6 @@ use std::fmt::Write as _;
 use crate::common::Folder;
 use appell_codegen::derived;
 use appell_codegen::jit::JitModel;
-use appell_codegen::mechanics::assemble;
-use appell_codegen::program::FunctionKind;
 use appell_gap::diagnose::{GapVerdict, Options, Report, against, diagnose};
 use appell_runtime::model::{At, Model};
 use appell_test_kit::Random;
@@ -96,13 +94,7 @@ fn joint(t: f64, joint: usize, phase: f64) -> [f64; 3] {
 /// The inputs of an arm with this spec.
 fn run(spec: &str, phase: f64) -> String {
     let derived = derived("rig.toml", spec).unwrap();
-    let kinds = [
-        &FunctionKind::OF_MOTIONS[..],
-        &[FunctionKind::InverseDynamics],
-    ]
-    .concat();
-    let program = assemble::program(derived.derivation, &derived.mechanism, &kinds).unwrap();
-    let model = JitModel::new(&program).unwrap();
+    let model = JitModel::new(derived.functions()).unwrap();
     let p: Vec<f64> = model
         .info()
         .parameters

@@ -53,8 +53,8 @@ impl Scene {
         };
         let flat_across = placement.flat_across(&mut derivation.algebra);
         let kinds = [FunctionKind::PositionConstraints];
+        let graph = derivation.algebra.graph.clone();
         let program = assemble::program(derivation, mechanism, &kinds)?;
-        let graph = program.graph.clone();
         let state = InitialState::new(&graph, mechanism, &symbols);
         let mut values = state.values().to_vec();
         if let Some(moment) = moment {

@@ -13,7 +13,7 @@ use appell::files;
 ///
 /// Computes rates, Appell's equations, Jacobians, energies, constraint forces and outputs, in SI. A
 /// case reads {"state": {"theta": 0.1, …}, "inputs": {…}, "parameters": {…}, "t": 0}; only the state
-/// must be complete.
+/// must be complete. A list "quantities" beside the cases limits what is derived and written.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -38,7 +38,7 @@ impl Evaluate {
         let text = files::read(&self.cases, MAX_BYTES)?;
         let model = engine::model(&self.model, &[], Some(self.engine))?;
         let cases = Cases::read(&self.cases.to_string_lossy(), &text, model.info())?;
-        let evaluation = model.evaluation()?;
+        let evaluation = model.evaluation(cases.quantities())?;
         let (mut singular, mut count) = (Vec::new(), 0_usize);
         files::write_with(&self.json, |to| {
             evaluation.write(cases.iter(), to, |index, case, values| {

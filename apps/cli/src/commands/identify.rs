@@ -68,7 +68,7 @@ impl Identify {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
         appell::recording::check(&set)?;
-        let model = engine::model_for_estimation(appell::recording::source(&set))?;
+        let model = engine::model_of(appell::recording::source(&set))?;
         let spinner = progress::spinner("reading");
         let options = Options {
             free: self.free.clone(),

@@ -43,7 +43,7 @@ pub(crate) struct Inverse {
 impl Inverse {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, Some(&self.model))?;
-        let model = engine::model_for_estimation(appell::recording::source(&set))?;
+        let model = engine::model_of(appell::recording::source(&set))?;
         let options = Options {
             free: self.free.clone(),
             biased: self.bias.clone(),

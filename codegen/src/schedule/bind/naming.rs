@@ -11,7 +11,7 @@ impl Binding<'_> {
     pub(super) fn given_name(&self, id: Id) -> Option<String> {
         let label = self.outline.labels[id.index()].as_ref();
         let derived = self.derived_name(id);
-        let derived = derived.map(|name| &self.program.graph.definition(name.definition).name);
+        let derived = derived.map(|name| &self.function.graph.definition(name.definition).name);
         derived.or(label.map(|label| &label.0)).cloned()
     }
 

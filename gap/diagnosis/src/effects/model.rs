@@ -10,11 +10,9 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use appell_codegen::compile::report;
-use appell_codegen::derived;
 use appell_codegen::jit::{JitError, JitModel};
-use appell_codegen::mechanics::assemble;
 use appell_codegen::program::FunctionKind;
+use appell_codegen::tapes::Tapes;
 use appell_runtime::model::{Model, ModelInfo};
 use appell_spec::compose::Composition;
 use appell_spec::edit::EditError;
@@ -112,7 +110,7 @@ pub fn written(spec: &Spec, candidate: &Candidate) -> Result<Option<Candidate>, 
     let Some(speed) = candidate.brings else {
         return Ok(Some(candidate));
     };
-    let (mechanism, model) = derive(&spec.file, &spec.text, &FunctionKind::ALL)?;
+    let (mechanism, model) = derive(&spec.file, &spec.text, &OF_ESTIMATION)?;
     let parameters = model.info().default_parameters();
     let drive = Drive::of(model.as_ref(), &parameters, speed);
     Ok(drive.map(|drive| candidate.driven(&mechanism, &drive)))
@@ -169,17 +167,14 @@ impl EffectModel {
         mut candidates: Vec<Candidate>,
     ) -> Result<Self, ModelError> {
         candidates.retain(|one| !one.creeps() && one.brings.is_none());
-        // Recorded motions are found by Newton's method.
-        let own = [FunctionKind::Jacobians, FunctionKind::InverseDynamics];
-        let functions = [&FunctionKind::OF_MOTIONS[..], &own].concat();
-        Self::with_functions(spec, candidates, &functions)
+        Self::requiring(spec, candidates, &[FunctionKind::InverseDynamics])
     }
 
     fn with_all(spec: &Spec, candidates: Vec<Candidate>) -> Result<Self, ModelError> {
-        Self::with_functions(spec, candidates, &FunctionKind::ALL)
+        Self::requiring(spec, candidates, &OF_ESTIMATION)
     }
 
-    fn with_functions(
+    fn requiring(
         spec: &Spec,
         candidates: Vec<Candidate>,
         functions: &[FunctionKind],
@@ -225,7 +220,7 @@ impl EffectModel {
         });
         let beside: Vec<Candidate> = beside.collect();
         let text = with_candidates(&self.plain.text, &beside)?;
-        let (mechanism, model) = derive(&self.plain.file, &text, &FunctionKind::ALL)?;
+        let (mechanism, model) = derive(&self.plain.file, &text, &OF_ESTIMATION)?;
         Ok(Augmented {
             candidate,
             model,
@@ -334,7 +329,7 @@ fn blamed(spec: &Spec, candidates: &[Candidate], error: ModelError) -> ModelErro
     let alone = |candidate: &Candidate| {
         let source = candidate.source.as_ref()?;
         let text = with_candidates(&spec.text, std::slice::from_ref(candidate)).ok()?;
-        match derive(&spec.file, &text, &FunctionKind::ALL) {
+        match derive(&spec.file, &text, &OF_ESTIMATION) {
             Err(ModelError::Spec(report)) => Some(source.blamed(&report, &text).into()),
             _ => None,
         }
@@ -342,18 +337,25 @@ fn blamed(spec: &Spec, candidates: &[Candidate], error: ModelError) -> ModelErro
     candidates.iter().find_map(alone).unwrap_or(error)
 }
 
-/// The mechanism of a spec, and machine code of its equations.
+/// The functions of a likelihood and its gradient.
+const OF_ESTIMATION: [FunctionKind; 4] = [
+    FunctionKind::Jacobians,
+    FunctionKind::Adjoint,
+    FunctionKind::OutputJacobians,
+    FunctionKind::OutputAdjoint,
+];
+
+/// The mechanism of a spec, and machine code of its equations with functions that must be possible.
 fn derive(
     file: &str,
     text: &str,
     functions: &[FunctionKind],
 ) -> Result<(Mechanism, Arc<JitModel>), ModelError> {
     let wrong = |report: Report| ModelError::Spec(Box::new(report));
-    let derived = derived(file, text).map_err(wrong)?;
-    let mechanism = derived.mechanism;
-    let program = assemble::program(derived.derivation, &mechanism, functions)
-        .map_err(|findings| wrong(report(&mechanism, text, &findings)))?;
-    Ok((mechanism, Arc::new(JitModel::new(&program)?)))
+    let mechanism = appell_spec::load(file, text).map_err(wrong)?.mechanism;
+    let tapes = Arc::new(Tapes::of_spec(file, text).map_err(wrong)?);
+    tapes.require(functions, text).map_err(wrong)?;
+    Ok((mechanism, Arc::new(JitModel::over(tapes)?)))
 }
 
 /// A spec with candidates.

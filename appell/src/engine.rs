@@ -5,7 +5,6 @@ use std::sync::Arc;
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
-use appell_codegen::tape::Tape;
 use appell_codegen::tapes::Tapes;
 use appell_runtime::model::Model;
 
@@ -116,8 +115,8 @@ impl Made {
         self.model.as_ref()
     }
 
-    /// The operations of the rates.
-    pub(crate) fn rates(&self) -> Option<&Tape> {
-        self.tapes.get(FunctionKind::Rates)
+    /// Its functions as tapes.
+    pub(crate) fn tapes(&self) -> &Tapes {
+        &self.tapes
     }
 }

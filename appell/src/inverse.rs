@@ -12,6 +12,6 @@ impl Model {
     /// equations that hold whatever the inputs were.
     pub fn inverse(&self, set: &DataSet, options: &Options) -> Result<Answer, Error> {
         recording::check(set)?;
-        Ok(inverse::find(set, self.made()?.model(), options)?)
+        Ok(inverse::find(set, self.all_equations()?, options)?)
     }
 }

@@ -60,6 +60,7 @@ pub mod inverse;
 pub mod json;
 mod model;
 mod motion;
+pub mod places;
 pub mod recording;
 pub mod robot;
 pub mod sample;

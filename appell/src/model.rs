@@ -18,6 +18,7 @@ use crate::control::attraction::{self, Explored};
 use crate::control::{Design, Request, Schedule, law_file};
 use crate::engine::{self, Engine, Made};
 use crate::motion::{Motion, Simulated};
+use crate::places::Vectors;
 use crate::setup::{Assignment, Setup};
 use crate::source::Source;
 use crate::steady::{Answer, Question, Resolved};
@@ -38,6 +39,8 @@ pub struct Model {
     equations: engine::Equations,
     /// The equations derived in this process, if others are at hand.
     made: OnceLock<Made>,
+    /// Functions of eight places.
+    pub(crate) vectors: Vectors,
 }
 
 impl Model {
@@ -83,6 +86,7 @@ impl Model {
             source,
             equations,
             made: OnceLock::new(),
+            vectors: Vectors::default(),
         }
     }
 
@@ -104,10 +108,18 @@ impl Model {
         Ok(self.made.get_or_init(|| made))
     }
 
+    /// The equations with all functions, of which emitted code lacks adjoints and derivatives of outputs.
+    pub fn all_equations(&self) -> Result<&dyn Equations, Error> {
+        Ok(self.made()?.model())
+    }
+
     /// The operations of the rates, which closed loops are made from.
     pub(crate) fn rates(&self) -> Result<&Tape, Error> {
         let missing = || Error::request(Field::Model, "its rates cannot be derived");
-        self.made()?.rates().ok_or_else(missing)
+        self.made()?
+            .tapes()
+            .get(FunctionKind::Rates)
+            .ok_or_else(missing)
     }
 
     /// Derives functions now, in parallel, which a first use derives otherwise; returns why one of them is impossible.
@@ -332,7 +344,7 @@ impl Model {
         stage: impl FnMut(&'static str),
     ) -> Result<identify::Answer, Error> {
         recording::check(set)?;
-        let equations = self.made()?.model();
+        let equations = self.all_equations()?;
         Ok(identify::identify(set, equations, options, stage)?)
     }
 }

@@ -1,22 +1,25 @@
 //! Arrays from Python: a single point, or one per row.
 
-use appell::{EquationsOfMotion, ModelInputs};
-use appell_runtime::inputs::ZeroInputs;
+use appell::Model;
+use appell::derivation::FunctionKind;
+use appell::places::{Places, Rows};
 use appell_runtime::model::At;
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::errors::Raise as _;
+
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// An array argument: one row, or several.
-struct Rows<'py> {
+struct Given<'py> {
     array: PyReadonlyArrayDyn<'py, f64>,
     width: usize,
     count: Option<usize>,
 }
 
-impl<'py> Rows<'py> {
+impl<'py> Given<'py> {
     /// Rows of one of some widths. Contiguous arrays are not copied.
     fn new(value: &Bound<'py, PyAny>, widths: &[usize], name: &str) -> PyResult<Self> {
         let array = contiguous(value)?;
@@ -63,7 +66,7 @@ fn contiguous<'py>(value: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
 }
 
 /// Arguments of a call; omitted ones have the values of the spec.
-pub(crate) struct Places<'a, 'py> {
+pub(crate) struct Arguments<'a, 'py> {
     pub(crate) x: Option<&'a Bound<'py, PyAny>>,
     pub(crate) u: Option<&'a Bound<'py, PyAny>>,
     pub(crate) p: Option<&'a Bound<'py, PyAny>>,
@@ -79,65 +82,43 @@ pub(crate) struct Defaults {
     pub(crate) p: Vec<f64>,
 }
 
-/// The numbers of one argument, row by row.
-#[derive(Clone, Copy)]
-struct Column<'a> {
-    numbers: &'a [f64],
-    width: usize,
-    /// Stride between rows; zero for a single one.
-    step: usize,
-}
-
-impl<'a> Column<'a> {
-    fn of(rows: Option<&'a Rows<'_>>, default: &'a [f64]) -> PyResult<Self> {
-        let Some(rows) = rows else {
-            return Ok(Self {
-                numbers: default,
-                width: default.len(),
-                step: 0,
-            });
-        };
-        Ok(Self {
-            numbers: rows.numbers()?,
-            width: rows.width,
-            step: if rows.count.is_some() { rows.width } else { 0 },
-        })
-    }
-
-    fn row(self, row: usize) -> &'a [f64] {
-        &self.numbers[row * self.step..][..self.width]
-    }
+/// The numbers of one argument.
+fn numbers<'a>(rows: Option<&'a Given<'_>>, default: &'a [f64]) -> PyResult<Rows<'a>> {
+    let Some(rows) = rows else {
+        return Ok(Rows::same(default));
+    };
+    let numbers = rows.numbers()?;
+    Ok(match rows.count {
+        Some(_) => Rows::each(numbers, rows.width),
+        None => Rows::same(numbers),
+    })
 }
 
 /// A call of a function of the equations.
 pub(crate) struct Call<'a, 'py> {
     pub(crate) py: Python<'py>,
-    pub(crate) model: &'a dyn EquationsOfMotion,
+    pub(crate) model: &'a Model,
+    /// Number of threads; all processors where many places are worth it.
+    pub(crate) threads: Option<usize>,
     pub(crate) defaults: &'a Defaults,
-    pub(crate) places: Places<'a, 'py>,
+    pub(crate) places: Arguments<'a, 'py>,
     /// Arrays for the results.
     pub(crate) out: Option<Vec<Bound<'py, PyAny>>>,
 }
 
 impl<'py> Call<'_, 'py> {
-    /// Evaluates a function at one point or at each of N. `shapes` are the shapes of its results at one point.
+    /// Evaluates a function at one point or at each of N: `alone` at a point with its pseudo-accelerations, which are zero
+    /// if omitted, and `together`, which has the same results, at many. `shapes` are the shapes of the results at one point.
     pub(crate) fn evaluate<const R: usize>(
         self,
+        together: Option<FunctionKind>,
         shapes: [&[usize]; R],
-        function: impl Fn(At<'_>, [&mut [f64]; R]) + Send,
-    ) -> PyResult<Vec<Array<'py>>> {
-        self.evaluate_moving(shapes, move |at, _, results| function(at, results))
-    }
-
-    /// [`Self::evaluate`] for a function of pseudo-accelerations; omitted ones are zero.
-    pub(crate) fn evaluate_moving<const R: usize>(
-        self,
-        shapes: [&[usize]; R],
-        function: impl Fn(At<'_>, &[f64], [&mut [f64]; R]) + Send,
+        alone: impl Fn(At<'_>, &[f64], [&mut [f64]; R]) + Send + Sync,
     ) -> PyResult<Vec<Array<'py>>> {
         let Self {
             py,
             model,
+            threads,
             defaults,
             places,
             out,
@@ -145,7 +126,7 @@ impl<'py> Call<'_, 'py> {
         let info = model.info();
         let (m, declared) = (info.input_len(), info.declared_inputs);
         let rows = |value: Option<&Bound<'py, PyAny>>, widths: &[usize], name| {
-            let rows = value.map(|value| Rows::new(value, widths, name));
+            let rows = value.map(|value| Given::new(value, widths, name));
             rows.transpose()
         };
         let x = rows(places.x, &[info.state_len()], "x")?;
@@ -176,51 +157,34 @@ impl<'py> Call<'_, 'py> {
             slices.push(writer.as_slice_mut()?);
         }
         let mut slices = slices.into_iter();
-        let mut written: [&mut [f64]; R] =
-            std::array::from_fn(|_| slices.next().unwrap_or_default());
+        let written: [&mut [f64]; R] = std::array::from_fn(|_| slices.next().unwrap_or_default());
 
-        let x = Column::of(x.as_ref(), &defaults.x)?;
-        let u = Column::of(u.as_ref(), &defaults.u)?;
-        let p = Column::of(p.as_ref(), &defaults.p)?;
         let still = vec![0.0; info.speeds];
-        let accelerations = Column::of(accelerations.as_ref(), &still)?;
         let times = times.as_ref().map(PyArrayMethods::readonly);
         let t: &[f64] = match &times {
             Some(times) => times.as_slice()?,
             None => &[0.0],
         };
-        let t_step = usize::from(t_count.is_some());
-        let sizes = shapes.map(|shape| shape.iter().product::<usize>());
-        let mut compute = move || {
-            // Signals are checked when the model is made.
-            let signals = (u.width < m).then(|| ModelInputs::new(info, &ZeroInputs).ok());
-            let mut all = vec![0.0; m];
-            for row in 0..count.unwrap_or(1) {
-                let (t, x, mut inputs) = (t[row * t_step], x.row(row), u.row(row));
-                if let Some(Some(signals)) = &signals {
-                    signals.fill(t, x, &mut all);
-                    all[..declared].copy_from_slice(inputs);
-                    inputs = &all;
-                }
-                let at = At {
-                    t,
-                    x,
-                    u: inputs,
-                    p: p.row(row),
-                };
-                let mut sizes = sizes.into_iter();
-                let results = written.each_mut().map(|numbers| {
-                    let size = sizes.next().unwrap_or(0);
-                    &mut numbers[row * size..][..size]
-                });
-                function(at, accelerations.row(row), results);
-            }
+        let places = Places {
+            t: match t_count {
+                Some(_) => Rows::each(t, 1),
+                None => Rows::same(t),
+            },
+            x: numbers(x.as_ref(), &defaults.x)?,
+            u: numbers(u.as_ref(), &defaults.u)?,
+            p: numbers(p.as_ref(), &defaults.p)?,
+            accelerations: numbers(accelerations.as_ref(), &still)?,
+        };
+        let compute = || {
+            let count = count.unwrap_or(1);
+            model.at_places(together, &places, count, written, threads, alone)
         };
         match count {
             Some(_) => py.detach(compute),
             // Shorter than releasing and reacquiring the lock.
             None => compute(),
         }
+        .raise(py)?;
         drop(writers);
         Ok(arrays)
     }

@@ -12,7 +12,7 @@ use numpy::{PyArray1, PyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Call, Defaults, Places};
+use crate::arrays::{Arguments, Call, Defaults};
 use crate::errors::Raise;
 use crate::recordings::DataSet;
 use crate::watched::watched;
@@ -132,7 +132,7 @@ impl Model {
     }
 
     /// The results of a function at one place or at N; `out` takes them where it is given.
-    #[pyo3(signature = (function, x, u, p, t, out, accelerations = None))]
+    #[pyo3(signature = (function, x, u, p, t, out, accelerations = None, threads = None))]
     #[expect(clippy::too_many_arguments, reason = "called from Python alone")]
     fn _evaluate<'py>(
         &self,
@@ -144,6 +144,7 @@ impl Model {
         t: Any<'_, 'py>,
         out: Option<Vec<Bound<'py, PyAny>>>,
         accelerations: Any<'_, 'py>,
+        threads: Option<usize>,
     ) -> PyResult<Vec<Array<'py>>> {
         let model = self.inner.equations();
         let info = model.info();
@@ -151,9 +152,10 @@ impl Model {
         let (s, l, r) = (info.speeds, info.output_len(), info.reactions.len());
         let call = Call {
             py,
-            model,
+            model: &self.inner,
+            threads,
             defaults: &self.defaults,
-            places: Places {
+            places: Arguments {
                 x,
                 u,
                 p,
@@ -163,19 +165,37 @@ impl Model {
             out,
         };
         match function {
-            "rates" => call.evaluate([&[n]], |at, [rates]| model.rates(at, rates)),
-            "jacobians" => call.evaluate([&[n], &[n, n], &[n, m]], |at, [rates, a, b]| {
-                model.jacobians(at, rates, a, b);
+            "rates" => call.evaluate(Some(FunctionKind::Rates), [&[n]], |at, _, [rates]| {
+                model.rates(at, rates);
             }),
-            "parameter_jacobian" => call.evaluate([&[n, k]], |at, [by_p]| {
-                model.parameter_jacobian(at, by_p);
-            }),
-            "appell" => call.evaluate([&[s, s], &[s], &[s]], |at, [mass, bias, forces]| {
-                model.appell(at, mass, bias, forces);
-            }),
+            "jacobians" => {
+                let shapes: [&[usize]; 3] = [&[n], &[n, n], &[n, m]];
+                call.evaluate(
+                    Some(FunctionKind::Jacobians),
+                    shapes,
+                    |at, _, [rates, a, b]| {
+                        model.jacobians(at, rates, a, b);
+                    },
+                )
+            }
+            "parameter_jacobian" => call.evaluate(
+                Some(FunctionKind::ParameterJacobian),
+                [&[n, k]],
+                |at, _, [by_p]| {
+                    model.parameter_jacobian(at, by_p);
+                },
+            ),
+            "appell" => call.evaluate(
+                None,
+                [&[s, s], &[s], &[s]],
+                |at, _, [mass, bias, forces]| {
+                    model.appell(at, mass, bias, forces);
+                },
+            ),
             "energies" => call.evaluate(
+                None,
                 [&[], &[], &[], &[]],
-                |at, [kinetic, potential, power, acceleration]| {
+                |at, _, [kinetic, potential, power, acceleration]| {
                     let energies = model.energies(at);
                     kinetic[0] = energies.kinetic;
                     potential[0] = energies.potential;
@@ -183,27 +203,36 @@ impl Model {
                     acceleration[0] = energies.acceleration;
                 },
             ),
-            "outputs" => call.evaluate([&[l]], |at, [outputs]| model.outputs(at, outputs)),
-            "output_jacobians" => call.evaluate([&[l], &[l, n], &[l, m]], |at, [outputs, c, d]| {
-                model.output_jacobians(at, outputs, c, d);
+            "outputs" => call.evaluate(Some(FunctionKind::Outputs), [&[l]], |at, _, [outputs]| {
+                model.outputs(at, outputs);
             }),
-            "constraint_forces" => call.evaluate([&[r, 3]], |at, [forces]| {
-                model.constraint_forces(at, forces);
-            }),
-            "inverse_dynamics" => call.evaluate_moving([&[s]], |at, accelerations, [demand]| {
-                model.inverse_dynamics(at, accelerations, demand);
-            }),
-            "inverse_dynamics_jacobians" => call.evaluate_moving(
+            "output_jacobians" => {
+                let model = self.inner.all_equations().raise(py)?;
+                let shapes: [&[usize]; 3] = [&[l], &[l, n], &[l, m]];
+                let kind = Some(FunctionKind::OutputJacobians);
+                call.evaluate(kind, shapes, |at, _, [outputs, c, d]| {
+                    model.output_jacobians(at, outputs, c, d);
+                })
+            }
+            "constraint_forces" => call.evaluate(
+                Some(FunctionKind::ConstraintForces),
+                [&[r, 3]],
+                |at, _, [forces]| {
+                    model.constraint_forces(at, forces);
+                },
+            ),
+            "inverse_dynamics" => call.evaluate(
+                Some(FunctionKind::InverseDynamics),
+                [&[s]],
+                |at, given, [demand]| {
+                    model.inverse_dynamics(at, given, demand);
+                },
+            ),
+            "inverse_dynamics_jacobians" => call.evaluate(
+                Some(FunctionKind::InverseDynamicsJacobians),
                 [&[s], &[s, n], &[s, m], &[s, s]],
-                |at, accelerations, [demand, by_state, by_inputs, mass]| {
-                    model.inverse_dynamics_jacobians(
-                        at,
-                        accelerations,
-                        demand,
-                        by_state,
-                        by_inputs,
-                        mass,
-                    );
+                |at, given, [demand, by_state, by_inputs, mass]| {
+                    model.inverse_dynamics_jacobians(at, given, demand, by_state, by_inputs, mass);
                 },
             ),
             other => Err(PyValueError::new_err(format!(

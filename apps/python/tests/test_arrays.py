@@ -154,3 +154,24 @@ def test_wrong_specs_tell_their_places():
         appell.load("pendulum").state(thet=1)
     with pytest.raises(appell.DataError):
         appell.load("/nowhere/spec.toml")
+
+
+@pytest.mark.parametrize("name", ["unicycle", "bicycle", "four_bar", "cart_pole"])
+@pytest.mark.parametrize("threads", [1, 3])
+def test_blocks_of_places_have_the_bits_of_single_ones(model, name, threads):
+    m = model(name)
+    x, u, p = places(m, 101)
+    acceleration = np.random.default_rng(2).standard_normal((101, len(m.speeds)))
+    t = np.linspace(0, 1, 101)
+
+    def same(many, single):
+        for row in range(101):
+            for part, one in zip(many, single(row), strict=True):
+                assert part[row].tobytes() == one.tobytes()
+
+    for function in (m.rates, m.outputs, m.parameter_jacobian, m.constraint_forces):
+        same([function(x, u, p, t, threads=threads)], lambda row, f=function: [f(x[row], u[row], p[row], t[row])])
+    for function in (m.jacobians, m.output_jacobians, m.appell):
+        same(function(x, u, p, t, threads=threads), lambda row, f=function: f(x[row], u[row], p[row], t[row]))
+    same([m.inverse_dynamics(acceleration, x, threads=threads)], lambda row: [m.inverse_dynamics(acceleration[row], x[row])])
+    same(m.inverse_dynamics_jacobians(acceleration, x), lambda row: m.inverse_dynamics_jacobians(acceleration[row], x[row]))

@@ -182,21 +182,25 @@ class Model(_appell.Model):
 
     # Equations
 
-    def rates(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
-        """ẋ, (n,) or (N, n)."""
-        return self._evaluate("rates", x, u, p, t, None if out is None else [out])[0]
+    def rates(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None, threads: int | None = None) -> np.ndarray:
+        """ẋ, (n,) or (N, n).
 
-    def jacobians(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None) -> Jacobians:
+        From 64 places on, functions of arrays are evaluated eight places at a time, with the bits of single places; `threads`
+        is the number of threads, by default all processors where there are thousands of places. `out` takes the results.
+        """
+        return self._evaluate("rates", x, u, p, t, None if out is None else [out], threads=threads)[0]
+
+    def jacobians(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None, threads: int | None = None) -> Jacobians:
         """ẋ, A = ∂ẋ/∂x and B = ∂ẋ/∂u."""
-        return Jacobians(*self._evaluate("jacobians", x, u, p, t, None if out is None else list(out)))
+        return Jacobians(*self._evaluate("jacobians", x, u, p, t, None if out is None else list(out), threads=threads))
 
-    def parameter_jacobian(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
+    def parameter_jacobian(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None, threads: int | None = None) -> np.ndarray:
         """P = ∂ẋ/∂p, (n, k) or (N, n, k)."""
-        return self._evaluate("parameter_jacobian", x, u, p, t, None if out is None else [out])[0]
+        return self._evaluate("parameter_jacobian", x, u, p, t, None if out is None else [out], threads=threads)[0]
 
-    def appell(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None) -> Appell:
+    def appell(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None, threads: int | None = None) -> Appell:
         """Appell's equations M ω̇ + b = Π."""
-        return Appell(*self._evaluate("appell", x, u, p, t, None if out is None else list(out)))
+        return Appell(*self._evaluate("appell", x, u, p, t, None if out is None else list(out), threads=threads))
 
     def mass_matrix(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> np.ndarray:
         """M of Appell's equations M ω̇ + b = Π, (s, s) or (N, s, s)."""
@@ -210,7 +214,7 @@ class Model(_appell.Model):
         """The pseudo-forces Π of Appell's equations M ω̇ + b = Π, (s,) or (N, s)."""
         return self._evaluate("appell", x, u, p, t, None)[2]
 
-    def inverse_dynamics(self, accelerations: Any = None, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
+    def inverse_dynamics(self, accelerations: Any = None, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None, threads: int | None = None) -> np.ndarray:
         """The pseudo-forces M ω̇ + b − Π that pseudo-accelerations ω̇ take beyond the loads, (s,) or (N, s).
 
         With inputs of zero they are what drives along the pseudo-velocities have to bring.
@@ -220,29 +224,29 @@ class Model(_appell.Model):
         >>> bool(abs(m.inverse_dynamics(m.rates()[:1])[0]) < 1e-12)
         True
         """
-        return self._evaluate("inverse_dynamics", x, u, p, t, None if out is None else [out], accelerations)[0]
+        return self._evaluate("inverse_dynamics", x, u, p, t, None if out is None else [out], accelerations, threads)[0]
 
-    def inverse_dynamics_jacobians(self, accelerations: Any = None, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None) -> InverseDynamics:
+    def inverse_dynamics_jacobians(self, accelerations: Any = None, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None, threads: int | None = None) -> InverseDynamics:
         """The same with its Jacobians."""
         results = None if out is None else list(out)
-        return InverseDynamics(*self._evaluate("inverse_dynamics_jacobians", x, u, p, t, results, accelerations))
+        return InverseDynamics(*self._evaluate("inverse_dynamics_jacobians", x, u, p, t, results, accelerations, threads))
 
     def energies(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> Energies:
         """Kinetic, potential and acceleration energy, and the power of the non-conservative loads; numbers or (N,)."""
         values = self._evaluate("energies", x, u, p, t, None)
         return Energies(*(value if value.ndim else value.item() for value in values))
 
-    def outputs(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
+    def outputs(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None, threads: int | None = None) -> np.ndarray:
         """The outputs y of the spec, (l,) or (N, l); names: `output_names`."""
-        return self._evaluate("outputs", x, u, p, t, None if out is None else [out])[0]
+        return self._evaluate("outputs", x, u, p, t, None if out is None else [out], threads=threads)[0]
 
-    def output_jacobians(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None) -> OutputJacobians:
+    def output_jacobians(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None, threads: int | None = None) -> OutputJacobians:
         """y, C = ∂y/∂x and D = ∂y/∂u."""
-        return OutputJacobians(*self._evaluate("output_jacobians", x, u, p, t, None if out is None else list(out)))
+        return OutputJacobians(*self._evaluate("output_jacobians", x, u, p, t, None if out is None else list(out), threads=threads))
 
-    def constraint_forces(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
+    def constraint_forces(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None, threads: int | None = None) -> np.ndarray:
         """Forces of the constraints in the ground in N, (r, 3) or (N, r, 3); names: `reactions`."""
-        return self._evaluate("constraint_forces", x, u, p, t, None if out is None else [out])[0]
+        return self._evaluate("constraint_forces", x, u, p, t, None if out is None else [out], threads=threads)[0]
 
     def linearise(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> Linear:
         """The linear equations about a point of the state space, or about a `SteadyMotion`."""

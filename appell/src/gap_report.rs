@@ -224,13 +224,15 @@ impl GapReport {
             return Ok(None);
         }
         if found.changes.is_some() || found.alternative().is_some() {
-            return self.hypothesis(wanted).cloned().map(Some);
+            let found = self.hypothesis(wanted)?;
+            return Ok(Some(found.clone().with_gains()));
         }
         let nominal = self.which.iter().find(|other| other.effects.is_empty());
-        Ok(Some(Hypothesis {
+        let found = Hypothesis {
             changes: nominal.and_then(|nominal| nominal.changes.clone()),
             ..found.clone()
-        }))
+        };
+        Ok(Some(found.with_gains()))
     }
 
     /// Whether the fitted numbers close a material share of the errors on the held-out runs.
@@ -267,6 +269,23 @@ impl GapReport {
 }
 
 impl Hypothesis {
+    /// The same, in which gains and scales that were fitted within their tolerances are effects.
+    fn with_gains(mut self) -> Self {
+        let gains = self.changes.iter().flat_map(|changes| &changes.gains);
+        for gain in gains {
+            let effect = gain.name.rsplit_once('.').map_or("", |(effect, _)| effect);
+            self.effects.push(effect.to_owned());
+            self.parameters.push(Found {
+                name: gain.name.clone(),
+                value: Some(gain.value),
+                std: gain.std,
+                unit: gain.unit.clone(),
+                without: Some(gain.stated),
+            });
+        }
+        self
+    }
+
     /// Its effects in one line.
     pub fn name(&self) -> String {
         if self.effects.is_empty() {

@@ -84,10 +84,21 @@ impl Improved<'_> {
         for one in &changes.parameters {
             let _ = writeln!(text, "  changed   {}", refitted(one));
         }
+        let is_of = |one: &Refitted, effect: &SignalEffect| {
+            one.name
+                .strip_prefix(&effect.effect)
+                .is_some_and(|rest| rest.starts_with('.'))
+        };
+        let gains = changes.gains.iter();
+        for one in gains.filter(|one| !effects.iter().any(|effect| is_of(one, effect))) {
+            let _ = writeln!(text, "  changed   {}", refitted(one));
+        }
         for one in effects {
             let beside = self.report.imperfections.iter();
             let mut values = hypothesis.parameters.iter().chain(beside);
             let value = values.find(|value| of(value, one)).map(Found::sentence);
+            let gain = changes.gains.iter().find(|gain| is_of(gain, one));
+            let value = value.or_else(|| gain.map(|gain| number(gain.value)));
             let value = value.unwrap_or_default();
             let _ = writeln!(text, "  elsewhere {}", elsewhere(one, &value));
         }

@@ -83,6 +83,7 @@ mod search;
 mod sets;
 mod start_levels;
 mod starts;
+mod stated;
 mod traces;
 mod twins;
 mod unknown;
@@ -117,10 +118,11 @@ use horizon::Judged;
 use imperfection::Imperfection;
 use imperfections::{immaterial, known};
 use screen::Screen;
+use stated::Stated;
 
 /// Version of the engine. Every change that affects a number of some report increments it, so that scores and
 /// calibration can state the version to which they belong.
-pub const ENGINE: u32 = 26;
+pub const ENGINE: u32 = 27;
 
 /// Largest number of rows and of measured values in a fit: with more, statistical errors are far below modelling errors.
 const MOST_ROWS: usize = 4000;
@@ -152,19 +154,34 @@ fn diagnosed(
     if fitted.runs.is_empty() {
         return Err(DiagnoseError::NothingToFit);
     }
-    let scales = scales::of(&fitted);
-    let mut all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
-    all.retain(|one| !options.present.contains(&one.name()));
+    let in_spec = |set: &DataSet| {
+        let scales = scales::of(&fitted.bound_to(&set.mechanism));
+        let mut all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
+        all.retain(|one| !options.present.contains(&one.name()));
+        Ok::<_, DiagnoseError>(all)
+    };
+    let mut all = in_spec(set)?;
+    let stated = Stated::of(set, &all)?;
+    if let Some(stated) = &stated {
+        all = stated.replaced(in_spec(&stated.set)?);
+    }
+    let [set, whole, fitted] = [set, &whole, &fitted].map(|own| match &stated {
+        Some(stated) => stated.bound(own),
+        None => own.clone(),
+    });
+    let set = &set;
+    let added = stated.map_or_else(Vec::new, |stated| stated.candidates);
     if by_forces::applies(set, options) {
         let forces = all.iter().filter(|one| by_forces::acts(one)).cloned();
         let model = EffectModel::of_forces(&set.spec, forces.collect())?;
+        let model = model.in_spec(&added);
         match by_forces::diagnose(set, before, &model, options, &mut stage) {
             // Runs may be too short for splines.
             Err(DiagnoseError::Forces(_)) => {}
             told => return told,
         }
     }
-    let mut model = EffectModel::new(&set.spec, all)?;
+    let mut model = EffectModel::new(&set.spec, all)?.in_spec(&added);
     model.is_of_changes = before.is_some();
     let reading = reading::likely(&fitted, &model)?;
     let [set, whole, fitted] = [set, &whole, &fitted].map(|own| DataSet {
@@ -269,7 +286,7 @@ fn by_filter(
         leader = leader_of(&report, best, rebound);
         how_far = far(&leader)?;
     }
-    report.settle(how_far.as_ref(), bench.is_over_windows());
+    report.settle(how_far.as_ref(), &bench);
     let horizons = held_out.horizons(&bench, &comparison, &leader)?;
     let pictures = if options.pictures {
         stage("drawing");

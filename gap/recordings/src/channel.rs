@@ -27,6 +27,8 @@ pub struct Channel {
     pub zero: f64,
     /// Interpolation of an input between rows, if stated.
     pub interpolation: Option<Interpolation>,
+    /// Relative standard deviation of its scale, of an input that of the gain of its actuator, as stated.
+    pub tolerance: Option<f64>,
     /// Noise level as stated, in SI.
     pub stated_noise: Option<f64>,
     /// Noise level that is used; `None` for inputs, for unused columns, and if unknown.
@@ -132,6 +134,7 @@ impl Channel {
             turn: None,
             zero: 0.0,
             interpolation: None,
+            tolerance: None,
             stated_noise,
             noise: None,
         }

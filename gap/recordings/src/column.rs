@@ -14,14 +14,16 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use crate::channel::{Channel, Measured, Role};
-use crate::fields::{Fields, Value};
+use crate::fields::{Fields, Tolerance, Value};
 use crate::named::Named;
 
 /// Keys of a channel that the times do not have.
-pub(crate) const CHANNEL_KEYS: [&str; 10] = [
+pub(crate) const CHANNEL_KEYS: [&str; 12] = [
     "measures",
     "input",
     "noise_std",
+    "scale_std",
+    "gain_std",
     "unit_checked",
     "reversed",
     "interpolation",
@@ -33,13 +35,15 @@ pub(crate) const CHANNEL_KEYS: [&str; 10] = [
 /// Largest size of one in a column, in SI.
 const MOST_FACTOR: f64 = 1e30;
 /// Keys of a line.
-const LINE_KEYS: [&str; 12] = [
+const LINE_KEYS: [&str; 14] = [
     "measures",
     "input",
     "unit",
     "unit_checked",
     "reversed",
     "noise_std",
+    "scale_std",
+    "gain_std",
     "interpolation",
     "time",
     "counts_per_turn",
@@ -117,6 +121,7 @@ pub(crate) fn channel(
         fields.tell(Code::NotAllowedHere, message, at, "remove `noise_std`");
         return None;
     }
+    let tolerance = tolerance(fields, table, role);
     // An invalid unit has been reported; a recorded channel may have none.
     let unit = match unit {
         None if table.get("unit").is_none() && label.is_none() => Unit::si(Dimension::NONE),
@@ -142,10 +147,46 @@ pub(crate) fn channel(
         reversed: (is_reversed || table.get("reversed").is_some())
             .then_some(reversed != is_reversed),
         interpolation,
+        tolerance,
         turn,
         zero,
         ..Channel::new(column, role, unit, stated_noise)
     })
+}
+
+/// The tolerance of the scale of a sensor, `scale_std`, or of the gain of an actuator, `gain_std`.
+fn tolerance(fields: &mut Fields<'_>, table: &DeTable<'_>, role: Role) -> Option<f64> {
+    let keys = [
+        (
+            "scale_std",
+            matches!(role, Role::Measures(_)),
+            "a measured channel has a scale",
+            "`gain_std`",
+        ),
+        (
+            "gain_std",
+            matches!(role, Role::Input(_)),
+            "an input has a gain",
+            "`scale_std`",
+        ),
+    ];
+    let mut stated = None;
+    for (key, belongs, why, other) in keys {
+        let Some(value) = table.get(key) else {
+            continue;
+        };
+        if !belongs {
+            let message = format!("only {why}");
+            let help = format!("remove `{key}`, or write {other}");
+            fields.tell(Code::NotAllowedHere, message, value.span(), &help);
+            continue;
+        }
+        // A scale has no unit: both forms are shares.
+        let (Tolerance::Absolute(share) | Tolerance::Relative(share)) =
+            fields.tolerance(table, key)?;
+        stated = Some(share);
+    }
+    stated.filter(|share| *share > 0.0)
 }
 
 /// The unit of a column. That of an actuator's command which is no position and no rate is a note: the number counts

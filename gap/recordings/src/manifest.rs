@@ -13,6 +13,8 @@
 //! room  = { unit = "K" }                   # recorded, and in no model
 //! omega = { measures = "omega", unit = "rpm", unit_checked = true }   # never doubted
 //! alpha = { measures = "alpha", unit = "rad", reversed = true }       # positive the other way round
+//! slide = { measures = "x", unit = "mm", scale_std = 0.02 }            # the scale of the sensor is known to 2 %
+//! motor = { input = "F", unit = "N", gain_std = "10 %" }              # the gain of the actuator
 //! clock = { time = true, unit = "ms" }     # the column of the times, where its name does not tell it
 //! knee  = { measures = "knee", counts_per_turn = 4096, gear = 9, zero = 2048, scale = -1 }   # of an encoder
 //!

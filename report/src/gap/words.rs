@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::diagnose::{Advice, Change, GapVerdict, Hypothesis, Left, Refitted, Report, Value};
+use appell_gap::diagnose::{
+    Advice, Change, Changes, GapVerdict, Hypothesis, Left, Refitted, Report, Value,
+};
 
 use super::numbers::{bounded, measured, part_of_all, sized};
 use super::shares::{refitted, refitted_share, shares};
@@ -143,7 +145,7 @@ pub(super) fn moved(hypothesis: Option<&Hypothesis>) -> Vec<String> {
     /// Standard deviations beyond which a difference is significant.
     const BEYOND: f64 = 3.0;
     let changes = hypothesis.and_then(|one| one.changes.as_ref());
-    let parameters = changes.iter().flat_map(|changes| &changes.parameters);
+    let parameters = changes.iter().flat_map(|changes| changes.refitted());
     let moved = parameters.filter_map(|one| {
         let std = one.std?;
         let has_moved = (one.value - one.stated).abs() > BEYOND * std;
@@ -176,10 +178,8 @@ pub(super) fn refit_moves(report: &Report) -> Vec<String> {
         .any(|far| refitted(&far.budget).is_some());
     let plain = report.which.iter().find(|one| one.effects.is_empty());
     let changes = plain.and_then(|one| one.changes.as_ref());
-    let parameters = changes
-        .filter(|_| is_material)
-        .map_or(&[][..], |one| &one.parameters);
-    let far = parameters.iter();
+    let changes = changes.filter(|_| is_material).into_iter();
+    let far = changes.flat_map(Changes::refitted);
     let mut far: Vec<&Refitted> = far
         .filter(|one| one.moved_by().is_some_and(|by| by.abs() > 1.0))
         .collect();

@@ -303,10 +303,12 @@ fn values_of(
                 let quantity = &info.parameters[index];
                 (candidate.short(&quantity.name), quantity.unit.to_string())
             }
-            (Unknown::Parameter(index), Acts::Parameter(_))
-                if info.parameters[index].name == candidate.site.as_str() =>
-            {
-                ("value", info.parameters[index].unit.to_string())
+            (Unknown::Parameter(index), Acts::Parameter(own)) if index == own => {
+                let quantity = &info.parameters[index];
+                (
+                    candidate.short_of_error(&quantity.name),
+                    quantity.unit.to_string(),
+                )
             }
             (unknown, acts) if of_signal == Some(unknown) => match acts {
                 Acts::Bias(channel) => ("bias", channel_unit(bench, channel)),
@@ -449,7 +451,7 @@ fn detectable(bench: &Bench<'_>, screen: &Screen) -> Vec<Detectable> {
         }
         let parameter = match candidate.acts {
             Acts::Items => bench.own(candidate).first().map(|(index, _)| *index),
-            Acts::Parameter(_) => info.parameter_index(&candidate.site),
+            Acts::Parameter(index) => Some(index),
             _ => None,
         };
         let (scale, unit) = match (candidate.acts, parameter) {

@@ -58,7 +58,7 @@ const FINELY: f64 = 0.02;
 /// Prior standard deviation of the logarithm of a shape.
 const SHAPE: f64 = 1.0;
 /// Relative prior standard deviation of a parameter whose error is a hypothesis.
-pub(super) const WRONG: f64 = 0.5;
+const WRONG: f64 = 0.5;
 
 /// An optimisation method.
 type Search = fn(&Estimation<'_>, &[f64], &[Free], Effort) -> Result<Fit, EstimateError>;
@@ -295,12 +295,9 @@ impl<'a> Bench<'a> {
 
     /// Whether a member is the error of a parameter.
     pub(super) fn is_wrong(&self, members: &[usize], unknown: Unknown) -> bool {
-        let info = self.effects.info();
         members.iter().any(|&member| {
-            let candidate = self.candidate(member);
-            let index = info.parameter_index(&candidate.site);
-            matches!(candidate.acts, Acts::Parameter(_))
-                && index.map(Unknown::Parameter) == Some(unknown)
+            let is_wrong = self.candidate(member).acts.in_error();
+            is_wrong == Some(unknown)
         })
     }
 
@@ -311,17 +308,36 @@ impl<'a> Bench<'a> {
         for one in &self.problem.wanted {
             match one.prior {
                 Some([value, _]) if self.is_wrong(members, one.unknown) => {
-                    free.push(one.around(value, WRONG * value.abs().max(f64::MIN_POSITIVE)));
+                    free.push(one.around(value, wrong(value)));
                 }
                 _ => free.push(*one),
             }
         }
+        let is_wanted = |one: &Free| self.wanted(one.unknown).is_some();
         for &member in members {
-            free.extend(self.brought(member, setup));
+            let brought = self.brought(member, setup).into_iter();
+            free.extend(brought.filter(|one| !is_wanted(one)));
         }
-        free.extend(self.imperfect(setup));
+        let imperfect = self.imperfect(setup).into_iter();
+        free.extend(imperfect.filter(|one| !is_wanted(one)));
         free.extend(&self.problem.levels);
         free
+    }
+
+    /// A value with a tolerance.
+    pub(super) fn wanted(&self, unknown: Unknown) -> Option<&Free> {
+        let mut wanted = self.problem.wanted.iter();
+        wanted.find(|own| own.unknown == unknown)
+    }
+
+    /// The errors of gains and scales with tolerances that are not members.
+    pub(super) fn stated_beside(&self, members: &[usize]) -> impl Iterator<Item = &Candidate> {
+        let candidates = self.effects.candidates.iter().enumerate();
+        let beside = candidates.filter(|(index, own)| {
+            let unknown = own.acts.in_error().filter(|_| own.has_tolerance);
+            !members.contains(index) && unknown.is_some_and(|own| self.wanted(own).is_some())
+        });
+        beside.map(|(_, own)| own)
     }
 
     /// The free parameters of a member.
@@ -368,9 +384,14 @@ impl<'a> Bench<'a> {
         self.imperfections.iter().filter_map(of)
     }
 
-    /// Sets the imperfections of a fit to those of perfect channels; effects of its members remain.
+    /// Sets the imperfections of a fit, and scales with tolerances, to those of perfect channels; effects of its members
+    /// remain.
     pub(super) fn perfected(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
-        for free in self.imperfect(&self.setup(&fitted.members)) {
+        let is_scale = |free: &&Free| matches!(free.unknown, Unknown::Scale(_));
+        let scales = self.problem.wanted.iter().filter(is_scale);
+        let scales = scales.filter(|free| !self.is_wrong(&fitted.members, free.unknown));
+        let imperfect = self.imperfect(&self.setup(&fitted.members));
+        for free in imperfect.iter().chain(scales) {
             let place = fitted.layout.place(free.unknown)?;
             fitted.fit.values[place] = perfect(free.unknown).max(free.range[0]);
         }
@@ -427,8 +448,8 @@ impl<'a> Bench<'a> {
 
     /// The parameters of a fit with the sizes of its members set to zero.
     pub(super) fn without(&self, fitted: &Fitted) -> Vec<f64> {
-        let info = self.effects.with(&fitted.members).info();
-        let mut plain = fitted.fit.values[..info.parameter_len()].to_vec();
+        let parameters = self.effects.with(&fitted.members).info().parameter_len();
+        let mut plain = fitted.fit.values[..parameters].to_vec();
         for &member in &fitted.members {
             let candidate = self.candidate(member);
             for (index, part) in self.own(candidate) {
@@ -436,9 +457,7 @@ impl<'a> Bench<'a> {
                     plain[index] = 0.0;
                 }
             }
-            if let (Acts::Parameter(_), Some(index)) =
-                (candidate.acts, info.parameter_index(&candidate.site))
-            {
+            if let Acts::Parameter(index) = candidate.acts {
                 plain[index] = self.set.parameters[index].value;
             }
         }
@@ -473,6 +492,13 @@ fn admit(setup: &mut Setup<'_>, acts: Acts, step: f64) {
         Acts::Slow(channel) => setup.channels[channel].lags = true,
         Acts::Items | Acts::Parameter(_) | Acts::Bias(_) | Acts::Scale(_) => {}
     }
+}
+
+/// Prior standard deviation of the error of a value that is in error; of a relative error, which is stated as zero, relative
+/// to one.
+pub(super) fn wrong(value: f64) -> f64 {
+    let size = if value == 0.0 { 1.0 } else { value.abs() };
+    WRONG * size
 }
 
 fn longest_delay(step: f64) -> f64 {

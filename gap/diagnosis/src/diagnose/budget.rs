@@ -197,14 +197,8 @@ pub(super) fn with(
             let place = place?;
             start[place] = whole[place];
         }
-        if let Acts::Parameter(_) = bench.candidate(member).acts {
-            let index = bench
-                .effects
-                .info()
-                .parameter_index(&bench.candidate(member).site);
-            if let Some(index) = index {
-                start[index] = whole[index];
-            }
+        if let Acts::Parameter(index) = bench.candidate(member).acts {
+            start[index] = whole[index];
         }
     }
     bench.fit_roughly(members, &estimation, &start)

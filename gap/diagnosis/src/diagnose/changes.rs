@@ -25,6 +25,9 @@ pub struct Changes {
     pub brought: Vec<Refitted>,
     /// Parameters of this rig.
     pub parameters: Vec<Refitted>,
+    /// Gains and scales of this rig, within their tolerances: relative errors, or factors.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gains: Vec<Refitted>,
     /// Effects on inputs or channels, which a spec cannot express.
     #[serde(rename = "beside")]
     pub signal_effects: Vec<SignalEffect>,
@@ -74,6 +77,11 @@ impl Refitted {
 }
 
 impl Changes {
+    /// The values that were fitted within tolerances.
+    pub fn refitted(&self) -> impl Iterator<Item = &Refitted> {
+        self.parameters.iter().chain(&self.gains)
+    }
+
     /// The spec with the changes, its comments and layout unchanged; `note` is a comment above the new items.
     pub fn improved(&self, spec: &str, note: &str) -> Result<String, ChangeError> {
         let mut values: Vec<(&str, f64)> = Vec::new();
@@ -100,7 +108,8 @@ impl Changes {
     /// The changes under a fitted hypothesis.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let members = || fitted.members.iter().map(|&member| bench.candidate(member));
-        let signal_effects = members().chain(bench.imperfect_candidates());
+        let beside = bench.stated_beside(&fitted.members);
+        let signal_effects = members().chain(bench.imperfect_candidates()).chain(beside);
         let signal_effects = signal_effects.filter_map(|candidate| {
             let acts = match candidate.acts {
                 Acts::Items | Acts::Parameter(_) => return None,
@@ -129,24 +138,29 @@ impl Changes {
             members: members().collect(),
             rig: &bench.set.parameters,
             values: &fitted.fit.values,
-            deviations: parameters.map(|index| deviation(fitted, index)).collect(),
+            deviations: parameters
+                .map(|index| deviation(fitted, Unknown::Parameter(index)))
+                .collect(),
         };
+        let changes = Self::of_equations(&of_equations)?;
+        let gains = changes.gains.into_iter().chain(scales(bench, fitted));
         Ok(Self {
             signal_effects: signal_effects.chain(shown).collect(),
-            ..Self::of_equations(&of_equations)?
+            gains: gains.collect(),
+            ..changes
         })
     }
 
     /// The changes of the equations under a hypothesis.
     pub(super) fn of_equations(of: &Equations<'_>) -> Result<Self, DiagnoseError> {
-        let members = of.members.iter();
         Ok(Self {
             items: of.items()?,
-            inputs: members
+            inputs: (of.candidates())
                 .flat_map(|candidate| candidate.added.clone())
                 .collect(),
             brought: of.brought(),
             parameters: of.parameters(),
+            gains: of.gains(),
             signal_effects: Vec::new(),
         })
     }
@@ -204,9 +218,15 @@ fn parameter_names(text: &str) -> Result<Vec<String>, EditError> {
 }
 
 impl Equations<'_> {
+    /// The members, and what the spec of the hypotheses has beside that of the user.
+    fn candidates(&self) -> impl Iterator<Item = &Candidate> {
+        let members = self.members.iter().copied();
+        members.chain(&self.effects.in_spec)
+    }
+
     /// The items of the members, with the fitted sizes and shapes, each with its standard deviation as tolerance.
     fn items(&self) -> Result<String, DiagnoseError> {
-        let members: Vec<Candidate> = self.members.iter().copied().cloned().collect();
+        let members: Vec<Candidate> = self.candidates().cloned().collect();
         let text = with_candidates("", &members).map_err(ModelError::from)?;
         let info = self.effects.info();
         let [mut values, mut deviations]: [Vec<(&str, f64)>; 2] = [Vec::new(), Vec::new()];
@@ -232,7 +252,7 @@ impl Equations<'_> {
 
     /// Sizes and shapes of the members.
     fn brought(&self) -> Vec<Refitted> {
-        let own = (self.members.iter()).flat_map(|candidate| self.effects.own(candidate));
+        let own = (self.candidates()).flat_map(|candidate| self.effects.own(candidate));
         own.filter(|(_, part)| *part != Part::Switch)
             .map(|(index, _)| {
                 let label = &self.effects.mechanism.parameters[ParameterId::new(index)].label;
@@ -249,9 +269,31 @@ impl Equations<'_> {
             .collect()
     }
 
+    /// Gains that the spec of the hypotheses has as parameters.
+    fn gains(&self) -> Vec<Refitted> {
+        let candidates = self.effects.candidates.iter();
+        let gain = |own: &Candidate| {
+            let Acts::Parameter(index) = own.acts else {
+                return None;
+            };
+            let is_member = self.members.iter().any(|member| member.acts == own.acts);
+            let short = own.short(&self.effects.info().parameters[index].name);
+            (own.has_tolerance && !is_member).then(|| Refitted {
+                name: format!("{}.{short}", own.name()),
+                stated: self.rig[index].value,
+                stated_std: self.rig[index].std,
+                value: self.values[index],
+                std: self.deviations[index],
+                unit: "1".to_owned(),
+            })
+        };
+        candidates.filter_map(gain).collect()
+    }
+
     /// Parameters of the mechanism that were free, or whose values on this rig differ from the spec.
     fn parameters(&self) -> Vec<Refitted> {
         let candidates = self.effects.candidates.iter();
+        let candidates = candidates.chain(&self.effects.in_spec);
         let brought: Vec<&String> = candidates
             .flat_map(|candidate| candidate.parameters.iter().map(|(name, _)| name))
             .collect();
@@ -281,16 +323,41 @@ impl Equations<'_> {
     }
 }
 
-/// Standard deviation of a parameter in SI, the prior one at a limit; `None` if it was not free.
-fn deviation(fitted: &Fitted, index: usize) -> Option<f64> {
+/// Scales of channels with tolerances.
+fn scales(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Refitted> {
+    let scale = |own: &Candidate| {
+        let unknown = own.acts.in_error()?;
+        let (Unknown::Scale(_), [stated, stated_std]) = (unknown, bench.wanted(unknown)?.prior?)
+        else {
+            return None;
+        };
+        let value = fitted.fit.values[fitted.layout.place(unknown).ok()?];
+        Some(Refitted {
+            name: format!("{}.scale", own.name()),
+            stated,
+            stated_std: Some(stated_std),
+            value,
+            std: deviation(fitted, unknown),
+            unit: "1".to_owned(),
+        })
+    };
+    bench
+        .stated_beside(&fitted.members)
+        .filter_map(scale)
+        .collect()
+}
+
+/// Standard deviation of a value in SI, the prior one at a limit; `None` if it was not free.
+fn deviation(fitted: &Fitted, unknown: Unknown) -> Option<f64> {
     let mut free = fitted.fit.free.iter();
-    let place = free.position(|free| free.unknown == Unknown::Parameter(index))?;
+    let place = free.position(|free| free.unknown == unknown)?;
     let std = if fitted.fit.at_limit[place] {
         fitted.fit.free[place].prior?[1]
     } else {
         fitted.fit.deviation(place).ok()?
     };
-    Some(std * fitted.fit.free[place].stretch(fitted.fit.values[index]))
+    let value = fitted.fit.values[fitted.layout.place(unknown).ok()?];
+    Some(std * fitted.fit.free[place].stretch(value))
 }
 
 /// A value in SI, rounded in its unit to so many digits after the first.

@@ -31,12 +31,12 @@ pub(super) struct Hardware {
     /// Scale by parameter: for an added mass or inertia, the one that doubles the mass matrix in some direction; infinite
     /// without a scale.
     alike: Vec<f64>,
-    /// Stated standard deviations by parameter.
-    tolerances: BTreeMap<usize, f64>,
+    /// Stated standard deviations.
+    tolerances: BTreeMap<Unknown, f64>,
 }
 
 impl Hardware {
-    /// `wanted` are the parameters with tolerances.
+    /// `wanted` are the values with tolerances.
     pub(super) fn of(effects: &EffectModel, wanted: &[Free]) -> Self {
         let info = effects.info();
         let of_pure = info
@@ -56,11 +56,8 @@ impl Hardware {
             }
         }
         let tolerance = |free: &Free| {
-            let (Unknown::Parameter(index), Some([value, deviation])) = (free.unknown, free.prior)
-            else {
-                return None;
-            };
-            Some((index, deviation * free.stretch(value)))
+            let [value, deviation] = free.prior?;
+            Some((free.unknown, deviation * free.stretch(value)))
         };
         // The uncertainty of earlier estimates is no prior for changes.
         let stated = wanted.iter().filter(|_| !effects.is_of_changes);
@@ -88,13 +85,10 @@ impl Hardware {
         -(size.abs().max(deviation) * sides * LN_1000).ln() + beyond(size / alike)
     }
 
-    /// Log prior density of the error of a parameter, and that error relative to the threshold of an error;
+    /// Log prior density of an error, and that error relative to the threshold of an error;
     /// `None` without a stated tolerance.
     pub(super) fn of_error(&self, unknown: Unknown, error: f64) -> Option<(f64, f64)> {
-        let Unknown::Parameter(index) = unknown else {
-            return None;
-        };
-        let tolerance = self.tolerances.get(&index)?;
+        let tolerance = self.tolerances.get(&unknown)?;
         let times = error / tolerance;
         Some((
             (MOST / tolerance).ln() + beyond(times),

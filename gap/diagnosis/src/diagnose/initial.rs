@@ -3,7 +3,7 @@
 use appell_estimate::{Estimation, Unknown};
 
 use super::DiagnoseError;
-use super::bench::{Bench, WRONG};
+use super::bench::{Bench, wrong};
 use crate::effects::{Acts, Part};
 
 /// Largest initial delay relative to the longest one.
@@ -42,11 +42,8 @@ pub(super) fn place(
     let candidate = bench.candidate(sizes.candidate);
     let first = sizes.values.first().copied().unwrap_or(0.0);
     let at = |list: &[usize], input| list.iter().position(|own| *own == input).unwrap_or(0);
-    let values_now = bench
-        .effects
-        .info()
-        .parameter_index(&candidate.site)
-        .map_or(0.0, |index| values[index]);
+    let stated = values.to_vec();
+    let now = |index: usize| stated[index];
     let mut set = |unknown, value: f64| -> Result<(), DiagnoseError> {
         values[layout.place(unknown)?] = value;
         Ok(())
@@ -73,15 +70,11 @@ pub(super) fn place(
                 direction += 1;
             }
         }
-        Acts::Parameter(_) => {
-            let info = bench.effects.info();
-            if let Some(index) = info.parameter_index(&candidate.site) {
-                let nominal = bench.set.parameters[index].value;
-                let most = WRONG * nominal.abs();
-                let [low, high] = info.parameters[index].range;
-                let moved = values_now + first.clamp(-most, most);
-                set(Unknown::Parameter(index), moved.clamp(low, high))?;
-            }
+        Acts::Parameter(index) => {
+            let most = wrong(bench.set.parameters[index].value);
+            let [low, high] = bench.effects.info().parameters[index].range;
+            let moved = now(index) + first.clamp(-most, most);
+            set(Unknown::Parameter(index), moved.clamp(low, high))?;
         }
         Acts::Bias(channel) => set(Unknown::Bias(channel), first)?,
         Acts::Scale(channel) => set(Unknown::Scale(channel), 1.0 + first)?,

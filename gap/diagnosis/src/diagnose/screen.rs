@@ -198,11 +198,7 @@ pub(super) fn directions(bench: &Bench<'_>, candidate: usize) -> Vec<Direction> 
             .filter(|(_, part)| !part.is_shape())
             .map(|(index, _)| Direction::Value(Unknown::Parameter(index)))
             .collect(),
-        Acts::Parameter(_) => bench
-            .effects
-            .info()
-            .parameter_index(&candidate.site)
-            .map_or_else(Vec::new, |index| value(Unknown::Parameter(index))),
+        Acts::Parameter(index) => value(Unknown::Parameter(index)),
         Acts::Lag(input) | Acts::Delay(input) => vec![Direction::LateInput(input)],
         Acts::Bias(channel) => value(Unknown::Bias(channel)),
         Acts::Scale(channel) => value(Unknown::Scale(channel)),

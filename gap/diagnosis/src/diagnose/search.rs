@@ -459,10 +459,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let candidate = bench.candidate(member);
         let own = bench.own(candidate).into_iter();
         let mut places: Vec<usize> = own.map(|(place, _)| place).collect();
-        if let (Acts::Parameter(_), Some(index)) = (
-            candidate.acts,
-            bench.effects.info().parameter_index(&candidate.site),
-        ) {
+        if let Acts::Parameter(index) = candidate.acts {
             values[index] = bench.set.parameters[index].value;
         }
         for free in bench.brought(member, &bench.setup(&whole.members)) {

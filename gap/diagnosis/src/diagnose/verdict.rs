@@ -1,7 +1,8 @@
 //! The verdict: what the leading hypothesis says, after predictions of the held-out runs.
 
-use super::calibration::{IMMATERIAL, MUCH};
-use super::report::{HowFar, Hypothesis, Report, Share, UNKNOWN, Where};
+use super::bench::Bench;
+use super::calibration::{IMMATERIAL, MUCH, TIED};
+use super::report::{HowFar, Hypothesis, Left, Report, Share, UNKNOWN, Where};
 
 /// The result in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -21,6 +22,9 @@ pub enum GapVerdict {
 const MOST: f64 = 0.5;
 /// Mean square error relative to that of the noise up to which predictions are as good as they can be.
 const NEAR: f64 = 2.0;
+/// Log Bayes factor of a law one step ahead beyond which it is a gap although predictions over a second do not show it: odds
+/// of some hundred.
+const DECISIVE: f64 = 2.0 * TIED;
 /// Part of its probability that `unknown` keeps where its law closes nothing.
 const DOUBT: f64 = 0.05;
 
@@ -96,9 +100,19 @@ impl Report {
         true
     }
 
+    /// Whether the evidence for a law is decisive, one step ahead and on runs to which it was not fitted: predictions over a
+    /// second may not resolve it. Over windows there is no process noise that gusts could be, and what servos hide is
+    /// immaterial.
+    fn is_law_decisive(&self, bench: &Bench<'_>) -> bool {
+        let is_decisive = |left: &Left| left.log_bayes_factor > DECISIVE;
+        let is_one_step = !bench.is_over_windows() && !bench.is_of_robot;
+        is_one_step && self.left.as_ref().is_some_and(is_decisive)
+    }
+
     /// The verdict after predictions of the held-out runs.
-    pub(super) fn settle(&mut self, far: Option<&HowFar>, is_by_simulation: bool) {
+    pub(super) fn settle(&mut self, far: Option<&HowFar>, bench: &Bench<'_>) {
         if let Some(far) = far
+            && !self.is_law_decisive(bench)
             && forget_immaterial_law(&mut self.which, far)
         {
             self.verdict = GapVerdict::of(&self.which[0], &self.tied);
@@ -106,6 +120,7 @@ impl Report {
                 self.place = Where::default();
             }
         }
+        let is_by_simulation = bench.is_over_windows();
         self.verdict = self.verdict.after(&self.which, far, is_by_simulation);
     }
 }

@@ -1,5 +1,6 @@
 //! An effect at a site, in one of its variants: a hypothesis on a missing part of the model.
 
+use appell_estimate::Unknown;
 use appell_spec::Mechanism;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
@@ -32,6 +33,15 @@ pub enum Acts {
 }
 
 impl Acts {
+    /// The value of the nominal model that is in error.
+    pub(crate) const fn in_error(self) -> Option<Unknown> {
+        match self {
+            Self::Parameter(index) => Some(Unknown::Parameter(index)),
+            Self::Scale(channel) => Some(Unknown::Scale(channel)),
+            _ => None,
+        }
+    }
+
     /// The imperfect channel, for an effect of a sensor.
     pub(crate) const fn channel(self) -> Option<usize> {
         match self {
@@ -110,6 +120,8 @@ pub struct Candidate {
     pub(crate) added: Vec<Term>,
     /// The load that it limits, with the term added to its expression.
     pub(super) limits: Option<(Stated, String)>,
+    /// Whether its size has the tolerance that the line of an input or of a channel states.
+    pub(crate) has_tolerance: bool,
     /// Number of effects as which it counts in the prior.
     pub(crate) counts: usize,
     /// Outputs that channels measure instead of a coordinate or pseudo-velocity: its name and the output.
@@ -172,6 +184,7 @@ impl Candidate {
             hides: None,
             added: Vec::new(),
             limits: None,
+            has_tolerance: false,
             counts: 1,
             shows: Vec::new(),
             source: None,
@@ -214,6 +227,27 @@ impl Candidate {
     pub(crate) fn short<'p>(&self, parameter: &'p str) -> &'p str {
         let short = parameter.strip_prefix(self.stem.as_str());
         short.map_or(parameter, |short| short.trim_start_matches('_'))
+    }
+
+    /// The name of the parameter that is in error: that of a relative error, or `value`.
+    pub(crate) fn short_of_error<'p>(&self, parameter: &'p str) -> &'p str {
+        if self.has_tolerance {
+            self.short(parameter)
+        } else {
+            "value"
+        }
+    }
+
+    /// The error of a relative error with a tolerance, once it is a parameter of the spec.
+    pub(crate) fn of_parameter(&self, index: usize) -> Self {
+        Self {
+            acts: Acts::Parameter(index),
+            parameters: Vec::new(),
+            items: String::new(),
+            added: Vec::new(),
+            limits: None,
+            ..self.clone()
+        }
     }
 
     /// The candidate with the declarations of its parameters only.
@@ -433,6 +467,7 @@ impl Candidate {
             hides: None,
             added,
             limits,
+            has_tolerance: effect.has_tolerance,
             counts: effect.counts,
             shows,
             source: effect.file.is_some().then_some(source),

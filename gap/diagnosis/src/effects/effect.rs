@@ -131,6 +131,8 @@ pub struct Effect {
     pub(super) counts: usize,
     pub(super) switch: Option<String>,
     pub(super) filter: Option<Filter>,
+    /// Whether its size has the tolerance that the line of an input or of a channel states.
+    pub(super) has_tolerance: bool,
     /// The whole file.
     pub(super) text: String,
     /// The name of the file; `None` for shipped effects.
@@ -150,8 +152,18 @@ impl From<Report> for EffectError {
 
 /// Keys of the section `[effect]`.
 pub(super) const KEYS: &[&str] = &[
-    "name", "family", "site", "about", "words", "variants", "vector", "together", "counts",
-    "switch", "filter",
+    "name",
+    "family",
+    "site",
+    "about",
+    "words",
+    "variants",
+    "vector",
+    "together",
+    "counts",
+    "switch",
+    "filter",
+    "tolerance",
 ];
 /// Placeholders that are available at every site.
 const EVERYWHERE: &[&str] = &["effect", "site"];
@@ -242,6 +254,7 @@ impl Effect {
         let is_vector = flag(&mut fields, header, "vector");
         let is_together = flag(&mut fields, header, "together");
         let counts = count(&mut fields, header, "counts");
+        let has_tolerance = flag(&mut fields, header, "tolerance");
         if let Some(site) = site {
             let mut known = [EVERYWHERE, &site.words().concat()].concat();
             known.extend(variants.iter().flatten().map(|(word, _)| word.as_str()));
@@ -270,6 +283,7 @@ impl Effect {
             counts,
             switch: switch.map(|(switch, _)| switch),
             filter,
+            has_tolerance,
             text: text.to_owned(),
             file: None,
         })

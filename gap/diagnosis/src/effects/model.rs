@@ -61,6 +61,8 @@ pub struct EffectModel {
     augmented: Vec<OnceLock<Option<Augmented>>>,
     /// The spec that candidates are added to.
     plain: Spec,
+    /// Candidates that the spec has already, with stated tolerances of their sizes.
+    pub(crate) in_spec: Vec<Candidate>,
     /// Whether parameter values are those of earlier recordings, so that a gap is a change.
     pub(crate) is_of_changes: bool,
 }
@@ -195,13 +197,22 @@ impl EffectModel {
             rolling: None,
             hypotheses: OnceLock::new(),
             plain: spec.clone(),
+            in_spec: Vec::new(),
             is_of_changes: false,
         })
     }
 
     /// The same spec with other candidates.
     pub(crate) fn again(&self, candidates: Vec<Candidate>) -> Result<Self, ModelError> {
-        Self::new(&self.plain, candidates)
+        Ok(Self::new(&self.plain, candidates)?.in_spec(&self.in_spec))
+    }
+
+    /// The same, where the spec has some candidates already.
+    pub(crate) fn in_spec(self, in_spec: &[Candidate]) -> Self {
+        Self {
+            in_spec: in_spec.to_vec(),
+            ..self
+        }
     }
 
     /// Derives the model of a candidate with an additional coordinate; returns whether that succeeded.

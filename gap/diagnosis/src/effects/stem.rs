@@ -50,6 +50,7 @@ impl<'n> Stem<'n> {
             hides: Some(begins),
             added: Vec::new(),
             limits: None,
+            has_tolerance: false,
             counts: 1,
             shows: Vec::new(),
             source: None,

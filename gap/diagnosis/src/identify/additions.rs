@@ -5,7 +5,7 @@ use appell_estimate::{Estimation, Free, Setup, Unknown};
 use appell_runtime::model::Quantity;
 
 use super::IdentifyError;
-use appell_recordings::{DataSet, Run};
+use appell_recordings::{Channel, DataSet, Run};
 
 /// Largest delay in s.
 const LONGEST_DELAY: f64 = 0.25;
@@ -96,6 +96,16 @@ pub(super) fn named(
 }
 
 impl Addition {
+    /// The scale of a channel.
+    pub(super) fn scale(channel: &Channel, index: usize) -> Self {
+        Self {
+            name: format!("{}.scale", channel.column),
+            kind: Kind::Scale,
+            index,
+            unit: ("1".to_owned(), 1.0),
+        }
+    }
+
     /// Adds it to a setup.
     pub(super) fn prepare(&self, setup: &mut Setup<'_>) {
         let add = |list: &mut Vec<usize>| {

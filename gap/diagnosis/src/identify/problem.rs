@@ -65,6 +65,14 @@ impl Problem {
         let mut levels = Vec::new();
         let measured = set.measured(setup.model.info());
         for (index, (channel, _)) in measured.iter().enumerate() {
+            let scale = Unknown::Scale(index);
+            if let Some(std) = channel.tolerance
+                && !wanted.iter().any(|own| own.unknown == scale)
+            {
+                let (free, quantity) = Addition::scale(channel, index).free(estimation, &set.runs);
+                wanted.push(free.around(1.0, std));
+                quantities.push(quantity);
+            }
             let (level, free) = noise(channel, index, estimation.recordings());
             values[layout.place(free.unknown)?] = level;
             levels.push(free);

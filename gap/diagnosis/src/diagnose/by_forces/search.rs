@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use appell_recordings::DataSet;
 use nalgebra::DVector;
 
-use super::super::bench::WRONG;
+use super::super::bench::wrong;
 use super::super::calibration::{Rest, inexact, tempered, unlisted, unlisted_beside_nothing};
 use super::super::prior::prior;
 use super::hypothesis::{Hypothesis, Member, Moves, Open, Squares};
@@ -259,7 +259,7 @@ impl<'s> Search<'s> {
     }
 
     fn fitted(&self, squares: &Squares, members: &[usize]) -> Option<Hypothesis> {
-        let wrong = |parameter: usize| {
+        let is_wrong = |parameter: usize| {
             members.iter().any(|&member| {
                 matches!(self.effects.candidates[member].acts, Acts::Parameter(own) if own == parameter)
             })
@@ -267,8 +267,8 @@ impl<'s> Search<'s> {
         let tolerance = |parameter: usize| {
             let own = self.tolerance(parameter)?;
             let value = self.set.parameters[parameter].value;
-            let wider = |[mean, std]: [f64; 2]| [mean, (WRONG * value.abs()).max(std)];
-            let prior = if wrong(parameter) {
+            let wider = |[mean, std]: [f64; 2]| [mean, wrong(value).max(std)];
+            let prior = if is_wrong(parameter) {
                 own.prior.map(wider)
             } else {
                 own.prior
@@ -277,7 +277,7 @@ impl<'s> Search<'s> {
         };
         let all = 0..self.set.parameters.len();
         let (of_members, others): (Vec<usize>, Vec<usize>) =
-            all.partition(|&parameter| wrong(parameter));
+            all.partition(|&parameter| is_wrong(parameter));
         let others: Vec<Open> = others.into_iter().filter_map(tolerance).collect();
         let own = members.iter().map(|&member| {
             let open = match self.effects.candidates[member].acts {

@@ -3,7 +3,7 @@
 use appell_estimate::{Direction, Estimation, Tangent, Unknown};
 
 use super::super::DiagnoseError;
-use super::super::bench::{Bench, WRONG};
+use super::super::bench::{Bench, wrong};
 use super::super::evidence::Fitted;
 use super::super::gram::{Normal, whitened};
 use super::super::nuisance::{known, moves_the_mean};
@@ -49,10 +49,11 @@ pub(super) fn columns(
             let (neutral, known) = match (own.acts, direction) {
                 (Acts::Parameter(_), Direction::Value(Unknown::Parameter(index))) => {
                     let nominal = bench.set.parameters[index].value;
-                    let wrong = WRONG * nominal.abs().max(f64::MIN_POSITIVE);
-                    (nominal, Some(wrong))
+                    (nominal, Some(wrong(nominal)))
                 }
-                (_, Direction::Value(Unknown::Scale(_))) => (1.0, None),
+                (_, Direction::Value(unknown @ Unknown::Scale(_))) => {
+                    (1.0, bench.wanted(unknown).map(|_| wrong(1.0)))
+                }
                 _ => (0.0, None),
             };
             let size = match direction {
@@ -106,8 +107,7 @@ pub(super) fn nuisances(
             continue;
         }
         // A parameter whose error is a member is within its tolerance in sets without that member.
-        let mut wanted = bench.problem.wanted.iter();
-        if let Some(own) = wanted.find(|own| own.unknown == free.unknown) {
+        if let Some(own) = bench.wanted(free.unknown) {
             let expected = own.prior.map_or(0.0, |[value, _]| own.to_coordinate(value));
             all.push(Nuisance {
                 direction,

@@ -60,7 +60,6 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
         "left": report.left,
         "law": report.law.as_ref().map(law),
         "change": report.change.as_ref().map(change),
-        "imperfections": report.imperfections,
         "independent": report.independent,
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
@@ -126,8 +125,6 @@ pub struct GapReport {
     which: Vec<Hypothesis>,
     #[serde(default)]
     tied: Vec<Vec<String>>,
-    #[serde(default)]
-    pub(crate) imperfections: Vec<Found>,
     #[serde(default)]
     how_far: Option<HowFar>,
 }

@@ -94,8 +94,7 @@ impl Improved<'_> {
             let _ = writeln!(text, "  changed   {}", refitted(one));
         }
         for one in effects {
-            let beside = self.report.imperfections.iter();
-            let mut values = hypothesis.parameters.iter().chain(beside);
+            let mut values = hypothesis.parameters.iter();
             let value = values.find(|value| of(value, one)).map(Found::sentence);
             let gain = changes.gains.iter().find(|gain| is_of(gain, one));
             let value = value.or_else(|| gain.map(|gain| number(gain.value)));

@@ -24,8 +24,7 @@ pub use law::law_sentence;
 pub use numbers::{is_determined, percent, share};
 pub use page::page;
 pub use words::{
-    before_sentence, events, hints, imperfections, joined, left_out, ranges, refit_sentence, said,
-    sentence,
+    before_sentence, events, hints, joined, left_out, ranges, refit_sentence, said, sentence,
 };
 
 pub use crate::text::short;

@@ -7,8 +7,8 @@ use appell::fleet::Rig;
 use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
-    Headline, before_sentence, divided, doubts, events, hints, imperfections, is_determined,
-    joined, law_sentence, left_of_forces, left_out, percent, ranges, said, share, short,
+    Headline, before_sentence, divided, doubts, events, hints, is_determined, joined, law_sentence,
+    left_of_forces, left_out, percent, ranges, said, share, short,
 };
 use appell_report::text::number;
 
@@ -110,9 +110,6 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     for group in tied.filter(|group| group.iter().filter(is_rival).count() > 1) {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
         let _ = writeln!(text, "  tied      {}", names.join(" | "));
-    }
-    if let Some(named) = imperfections(report) {
-        let _ = writeln!(text, "  sensors   {named}");
     }
     for hint in hints(report) {
         let _ = writeln!(text, "  hint      {hint}");

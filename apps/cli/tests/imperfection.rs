@@ -1,4 +1,4 @@
-//! What a sensor lacks: what no prediction shows is no cause, and is fitted together with every hypothesis.
+//! What a sensor lacks, and gains and scales within their tolerances.
 
 use serde_json::json;
 
@@ -8,31 +8,26 @@ use crate::support::{Folder, number};
 const BIAS: f64 = 2e-3;
 
 #[test]
-fn a_bias_that_changes_no_prediction_stands_beside_every_hypothesis() {
+fn a_bias_that_changes_no_prediction_is_named_as_such() {
     let folder = dry_with_two_sensors(0.3, || |v| v + BIAS);
     let shown = folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
     let report = folder.json("report.json");
-    let which = report["which"].as_array().expect("hypotheses");
-    assert_eq!(
-        which[0]["effects"],
-        json!(["coulomb_friction@x"]),
+    let top = &report["which"][0];
+    let effects = top["effects"].as_array().expect("effects");
+    let expected = [json!("coulomb_friction@x"), json!("sensor_bias@v")];
+    assert!(
+        effects.len() == 2 && expected.iter().all(|one| effects.contains(one)),
         "{report:#}"
     );
-    for hypothesis in which {
-        let effects = hypothesis["effects"].to_string();
-        assert!(!effects.contains("sensor_bias@v"), "{effects}");
-    }
-    let found = &report["imperfections"][0];
-    assert_eq!(found["name"], "sensor_bias@v.bias", "{report:#}");
+    let parameters = top["parameters"].as_array().expect("sizes");
+    let found = parameters
+        .iter()
+        .find(|one| one["name"] == "sensor_bias@v.bias");
+    let found = found.unwrap_or_else(|| panic!("{report:#}"));
     let (value, std) = (number(found, "value"), number(found, "std"));
     assert!((value - BIAS).abs() < 4.0 * std, "{value} ± {std} m/s");
-    let beside = &which[0]["changes"]["beside"][0];
-    assert_eq!(beside["effect"], "sensor_bias@v", "{report:#}");
-    assert!(
-        shown.stdout.contains("  sensors   sensor_bias@v 0.00"),
-        "{}",
-        shown.stdout
-    );
+    let remark = "bias of the sensor v is there as well, but predictions of the held-out runs hardly change with it";
+    assert!(shown.stdout.contains(remark), "{}", shown.stdout);
 }
 
 #[test]
@@ -45,7 +40,6 @@ fn a_bias_that_is_all_of_the_gap_is_its_cause() {
         json!(["sensor_bias@v"]),
         "{report:#}"
     );
-    assert_eq!(report["imperfections"], json!([]));
 }
 
 #[test]

@@ -60,8 +60,6 @@ mod gram;
 mod hardware;
 mod held_out;
 mod horizon;
-mod imperfection;
-mod imperfections;
 mod initial;
 mod instead;
 mod law;
@@ -115,8 +113,6 @@ use bench::Bench;
 use compare::Comparison;
 use held_out::{HeldOut, Leader};
 use horizon::Judged;
-use imperfection::Imperfection;
-use imperfections::{immaterial, known};
 use screen::Screen;
 use stated::Stated;
 
@@ -392,52 +388,15 @@ fn pictures(
     })
 }
 
-/// The hypotheses ranked on the training runs; again with imperfections of channels as nuisance parameters, if there
-/// are some without effect on predictions.
+/// The hypotheses ranked on the training runs.
 fn judged<'m>(
     training: Training<'_>,
     model: &'m EffectModel,
     options: &Options,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'m>, DiagnoseError> {
-    let whole = training.whole.bound_to(&model.mechanism);
-    let training = Training {
-        whole: &whole,
-        segments: training.segments,
-    };
-    let mut judged = judged_beside(training, &[], None, model, options, stage)?;
-    loop {
-        let more = immaterial(&judged).unwrap_or_default();
-        if more.is_empty() {
-            return Ok(judged);
-        }
-        stage("fitting imperfections of channels in every hypothesis");
-        let imperfections = [judged.bench.imperfections.clone(), more].concat();
-        match judged_beside(
-            training,
-            &imperfections,
-            Some(&judged),
-            model,
-            options,
-            stage,
-        ) {
-            Ok(again) => judged = again,
-            Err(_) => return Ok(judged),
-        }
-    }
-}
-
-/// The same with given imperfections of channels; `before` is the result without them.
-fn judged_beside<'m>(
-    training: Training<'_>,
-    imperfections: &[Imperfection],
-    before: Option<&Judged<'m>>,
-    model: &'m EffectModel,
-    options: &Options,
-    stage: &mut impl FnMut(&'static str),
-) -> Result<Judged<'m>, DiagnoseError> {
-    let whole = training.whole;
-    let mut bench = Bench::new(training.segments, model, imperfections)?;
+    let whole = &training.whole.bound_to(&model.mechanism);
+    let mut bench = Bench::new(training.segments, model)?;
     bench.whole.clone_from(&whole.runs);
     bench.is_of_robot = by_forces::is_of_robot(whole, options);
     stage("fitting the nominal model");
@@ -448,9 +407,7 @@ fn judged_beside<'m>(
     let windows = horizon::windows(whole, bench.is_of_robot)?;
     let levels = bench.levels(&nominal)?;
     let over = Bench::over(&windows, &bench, &levels)?;
-    let known = before.and_then(|before| known(&bench, before).ok());
-    let known = known.into_iter().collect();
-    let judged = horizon::judged(bench, screen, nominal, known, over, stage)?;
+    let judged = horizon::judged(bench, screen, nominal, over, stage)?;
     let mut judged = horizon::lengthened(judged, &levels, whole, stage)?;
     // An event is no process noise.
     if outside::rest(&mut judged, whole)?.is_some() {

@@ -16,8 +16,7 @@ use super::law::law;
 use super::numbers::{is_determined, percent};
 use super::plots;
 use super::words::{
-    alternatives, events, hints, imperfections, joined, left_out, next_best, percent_of, said,
-    statement, values,
+    alternatives, events, hints, joined, left_out, next_best, percent_of, said, statement, values,
 };
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
@@ -330,9 +329,6 @@ fn which(report: &Report) -> Markup {
                 (separated(group, |effects| code(&joined(effects)), &html! { " and " }))
                 " apart."
             }
-        }
-        @if let Some(named) = imperfections(report) {
-            p { b { "Sensors." } " " (capitalised(&named)) "." }
         }
         // A measured law has its own section.
         @if let Some(left) = report.left.as_ref().filter(|left| left.is_there() && report.law.is_none()) {

@@ -6,7 +6,7 @@ use appell_gap::diagnose::{
     Advice, Change, Changes, GapVerdict, Hypothesis, Left, Refitted, Report, Value,
 };
 
-use super::numbers::{bounded, measured, part_of_all, sized};
+use super::numbers::{bounded, part_of_all, sized};
 use super::shares::{refitted, refitted_share, shares};
 use crate::text::{short, with_unit};
 
@@ -456,19 +456,6 @@ pub fn left_out(report: &Report) -> Option<String> {
     (fitted < all).then(|| {
         format!("{fitted} of {all} training rows were used, in segments spread over the runs")
     })
-}
-
-/// Imperfections of channels that change no prediction, if any.
-pub fn imperfections(report: &Report) -> Option<String> {
-    let named = report.imperfections.iter().map(|value| {
-        let number = with_unit(&measured(value.value, value.std), &value.unit);
-        let effect = value.name.rsplit_once('.').map_or("", |(effect, _)| effect);
-        format!("{effect} {number}")
-    });
-    let named = named.reduce(|all, one| format!("{all}, {one}"))?;
-    Some(format!(
-        "{named}: in the recordings, but too small to change predictions; fitted together with every hypothesis"
-    ))
 }
 
 /// The effects of a hypothesis; for an unexplained rest, also the effects that close a part of the gap.

@@ -11,7 +11,6 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::changes::Changes;
 use super::evidence::Fitted;
-use super::imperfection::Imperfection;
 use super::report::Value;
 use crate::effects::EffectModel;
 use appell_recordings::{DataSet, Spec};
@@ -87,8 +86,7 @@ impl<'a> Rival<'a> {
                 column: column.clone(),
             });
         }
-        let imperfections = imperfections(main, &own);
-        let mut bench = Bench::new(&alternative.set, &alternative.model, &imperfections)?;
+        let mut bench = Bench::new(&alternative.set, &alternative.model)?;
         let mut fitted = bench.nominal()?;
         if main.is_over_windows() {
             let windows = main.set.rebound(&alternative.spec)?;
@@ -136,17 +134,6 @@ impl<'a> Rival<'a> {
         });
         Ok(values.collect())
     }
-}
-
-/// The imperfections of the main model, for the channels of the alternative.
-fn imperfections(main: &Bench<'_>, channels: &[String]) -> Vec<Imperfection> {
-    let own = columns(main);
-    let place = |channel: usize| channels.iter().position(|column| *column == own[channel]);
-    let moved = main.imperfections.iter().filter_map(|one| {
-        let acts = one.acts.moved(place)?;
-        Some(Imperfection { acts, ..*one })
-    });
-    moved.collect()
 }
 
 /// Names of the measured channels.

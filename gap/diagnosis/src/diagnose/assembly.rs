@@ -104,7 +104,6 @@ pub(super) fn assemble(
             .iter()
             .map(|(members, reason)| (names(bench.effects, members), reason.clone()))
             .collect(),
-        imperfections: imperfections(bench, best),
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),
         independent: comparison.independent,
@@ -255,14 +254,6 @@ fn values(bench: &Bench<'_>, fitted: &Fitted, yardsticks: Option<&Yardsticks<'_>
     let members = fitted.members.iter().map(|&member| bench.candidate(member));
     members
         .flat_map(|candidate| values_of(candidate, bench, fitted, yardsticks))
-        .collect()
-}
-
-/// Estimates of the nuisance parameters of channels.
-fn imperfections(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
-    let candidates = bench.imperfect_candidates();
-    candidates
-        .flat_map(|candidate| values_of(candidate, bench, fitted, None))
         .collect()
 }
 

@@ -102,7 +102,7 @@ pub(super) fn interpolated(
 
 /// Log likelihood of the one-step predictions of a hypothesis after a fit to these recordings.
 fn log_likelihood(bench: &Bench<'_>, fitted: &Fitted, set: &DataSet) -> Result<f64, DiagnoseError> {
-    let stepwise = Bench::new(set, bench.effects, &bench.imperfections)?;
+    let stepwise = Bench::new(set, bench.effects)?;
     let setup = stepwise.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &stepwise.recordings)?;
     let mut start = bench.carried(fitted, &estimation);

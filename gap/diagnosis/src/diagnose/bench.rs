@@ -13,7 +13,6 @@ use super::DiagnoseError;
 use super::evidence::Fitted;
 use super::feedback::InputInnovations;
 use super::hardware::Hardware;
-use super::imperfection::{Imperfection, perfect};
 use super::start_levels::{level, sizes};
 use super::unmodelled::UnmodelledChannel;
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
@@ -93,26 +92,19 @@ pub(super) struct Bench<'a> {
     pub(super) told: f64,
     /// Prior of the sizes of effects.
     pub(super) hardware: Hardware,
-    /// Nuisance parameters of channels, fitted in every hypothesis.
-    pub(super) imperfections: Vec<Imperfection>,
     /// Whether every coordinate is driven and measured, so that simulations over windows are stable.
     pub(super) is_of_robot: bool,
 }
 
 impl<'a> Bench<'a> {
     /// For one-step predictions of the training runs, with process noise.
-    pub(super) fn new(
-        set: &DataSet,
-        effects: &'a EffectModel,
-        imperfections: &[Imperfection],
-    ) -> Result<Self, DiagnoseError> {
-        Self::of(set, effects, imperfections, level)
+    pub(super) fn new(set: &DataSet, effects: &'a EffectModel) -> Result<Self, DiagnoseError> {
+        Self::of(set, effects, level)
     }
 
     pub(super) fn of(
         set: &DataSet,
         effects: &'a EffectModel,
-        imperfections: &[Imperfection],
         mut level: impl FnMut(&Estimation<'_>, &mut Problem) -> Result<(), DiagnoseError>,
     ) -> Result<Self, DiagnoseError> {
         let set = set.bound_to(&effects.mechanism);
@@ -127,14 +119,11 @@ impl<'a> Bench<'a> {
             (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64
         });
         let step = steps.fold(f64::INFINITY, f64::min);
-        let mut setup = Setup {
+        let setup = Setup {
             longest_step: longest_step(effects.longest_step(&[])),
             has_corners: true,
             ..Setup::new(effects.with(&[]), &measured)
         };
-        for imperfection in imperfections {
-            admit(&mut setup, imperfection.acts, step);
-        }
         let (problem, sizes, layout) = {
             let estimation = Estimation::new(&setup, &recordings)?;
             let mut problem = Problem::of(&set, &estimation, &Options::tolerant(), &[])?;
@@ -159,7 +148,6 @@ impl<'a> Bench<'a> {
             predicting: Vec::new(),
             negligible: Vec::new(),
             told: f64::INFINITY,
-            imperfections: imperfections.to_vec(),
             is_of_robot: false,
         })
     }
@@ -176,7 +164,7 @@ impl<'a> Bench<'a> {
             predicting: self.predicting.clone(),
             negligible: self.negligible.clone(),
             told: self.told,
-            ..Bench::of(&self.set, effects, &self.imperfections, levels)?
+            ..Bench::of(&self.set, effects, levels)?
         })
     }
 
@@ -256,8 +244,7 @@ impl<'a> Bench<'a> {
             .disturbances
             .truncate(self.effects.info().speeds - hidden);
         let members = members.iter().map(|&member| self.candidate(member).acts);
-        let imperfections = self.imperfections.iter().map(|one| one.acts);
-        for acts in members.chain(imperfections) {
+        for acts in members {
             admit(&mut setup, acts, self.step);
         }
         setup
@@ -301,8 +288,7 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// The free values of a hypothesis: parameters of the mechanism, parameters of the members, imperfections of
-    /// channels, noise levels.
+    /// The free values of a hypothesis: parameters of the mechanism, parameters of the members, noise levels.
     pub(super) fn free(&self, members: &[usize], setup: &Setup<'_>) -> Vec<Free> {
         let mut free: Vec<Free> = Vec::new();
         for one in &self.problem.wanted {
@@ -318,8 +304,6 @@ impl<'a> Bench<'a> {
             let brought = self.brought(member, setup).into_iter();
             free.extend(brought.filter(|one| !is_wanted(one)));
         }
-        let imperfect = self.imperfect(setup).into_iter();
-        free.extend(imperfect.filter(|one| !is_wanted(one)));
         free.extend(&self.problem.levels);
         free
     }
@@ -366,34 +350,14 @@ impl<'a> Bench<'a> {
             .collect()
     }
 
-    /// The free parameters of the imperfections.
-    fn imperfect(&self, setup: &Setup<'_>) -> Vec<Free> {
-        let free = self.imperfections.iter().filter_map(|one| {
-            let free = self.of_signal(one.acts, setup)?;
-            Some(one.expected(free))
-        });
-        free.collect()
-    }
-
-    /// The candidates that correspond to the imperfections.
-    pub(super) fn imperfect_candidates(&self) -> impl Iterator<Item = &Candidate> {
-        let of = |one: &Imperfection| {
-            let mut candidates = self.effects.candidates.iter();
-            candidates.find(|candidate| candidate.acts == one.acts)
-        };
-        self.imperfections.iter().filter_map(of)
-    }
-
-    /// Sets the imperfections of a fit, and scales with tolerances, to those of perfect channels; effects of its members
-    /// remain.
+    /// Sets scales with tolerances to those of perfect channels; effects of members remain.
     pub(super) fn perfected(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
-        let is_scale = |free: &&Free| matches!(free.unknown, Unknown::Scale(_));
-        let scales = self.problem.wanted.iter().filter(is_scale);
-        let scales = scales.filter(|free| !self.is_wrong(&fitted.members, free.unknown));
-        let imperfect = self.imperfect(&self.setup(&fitted.members));
-        for free in imperfect.iter().chain(scales) {
-            let place = fitted.layout.place(free.unknown)?;
-            fitted.fit.values[place] = perfect(free.unknown).max(free.range[0]);
+        for free in &self.problem.wanted {
+            let is_scale = matches!(free.unknown, Unknown::Scale(_));
+            if is_scale && !self.is_wrong(&fitted.members, free.unknown) {
+                let place = fitted.layout.place(free.unknown)?;
+                fitted.fit.values[place] = 1.0;
+            }
         }
         Ok(())
     }

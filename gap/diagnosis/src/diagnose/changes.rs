@@ -109,7 +109,7 @@ impl Changes {
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let members = || fitted.members.iter().map(|&member| bench.candidate(member));
         let beside = bench.stated_beside(&fitted.members);
-        let signal_effects = members().chain(bench.imperfect_candidates()).chain(beside);
+        let signal_effects = members().chain(beside);
         let signal_effects = signal_effects.filter_map(|candidate| {
             let acts = match candidate.acts {
                 Acts::Items | Acts::Parameter(_) => return None,

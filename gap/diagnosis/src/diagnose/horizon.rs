@@ -73,12 +73,10 @@ impl Judged<'_> {
 }
 
 /// The ranking by one-step predictions if it is validated by simulations over windows, otherwise that by these.
-/// Other hypotheses than the nominal model may be known.
 pub(super) fn judged<'a>(
     bench: Bench<'a>,
     screen: Screen,
     nominal: Fitted,
-    known: Vec<Fitted>,
     over: Bench<'a>,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'a>, DiagnoseError> {
@@ -91,7 +89,7 @@ pub(super) fn judged<'a>(
     let mut stepwise = if bench.is_of_robot {
         None
     } else {
-        seen.one_step(&nominal, &known)?
+        seen.one_step(&nominal)?
     };
     let holds = stepwise.as_ref().filter(|(_, holds)| *holds);
     let again = holds.and_then(|(stepwise, _)| seen.again(stepwise.best()));
@@ -158,7 +156,7 @@ pub(super) fn judged<'a>(
     // One-step predictions decide also if no simulation reproduces the recordings.
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise),
-        None => Comparison::of(&bench, nominal, known, |_| Look::Holds)?,
+        None => Comparison::of(&bench, nominal, Vec::new(), |_| Look::Holds)?,
     };
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
     stage("testing laws outside the library");
@@ -328,14 +326,10 @@ impl Again {
 impl Seen<'_, '_> {
     /// The ranking by one-step predictions, `None` if the windows reject it early; and whether the windows confirm it.
     /// They do not if process noise absorbs a missing effect.
-    fn one_step(
-        &mut self,
-        nominal: &Fitted,
-        known: &[Fitted],
-    ) -> Result<Option<(Comparison, bool)>, DiagnoseError> {
+    fn one_step(&mut self, nominal: &Fitted) -> Result<Option<(Comparison, bool)>, DiagnoseError> {
         let (bench, over) = (self.bench, self.over);
         let look = |fitted: &Fitted| self.look(fitted, nominal);
-        let found = Comparison::of(bench, nominal.clone(), known.to_vec(), look)?;
+        let found = Comparison::of(bench, nominal.clone(), Vec::new(), look)?;
         let Some(mut comparison) = found else {
             return Ok(None);
         };

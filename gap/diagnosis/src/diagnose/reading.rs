@@ -21,7 +21,7 @@ pub(super) fn likely(set: &DataSet, effects: &EffectModel) -> Result<Reading, Di
             reading,
             ..set.clone()
         };
-        let bench = Bench::of(&set, effects, &[], |_, _| Ok(()))?;
+        let bench = Bench::of(&set, effects, |_, _| Ok(()))?;
         let setup = bench.setup(&[]);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let likelihood = estimation.log_likelihood(&bench.problem.start);

@@ -427,9 +427,6 @@ pub struct Report {
     pub detectable: Vec<Detectable>,
     /// Hypotheses whose fit failed or ended before an optimum, with the reason.
     pub failed: Vec<(Vec<String>, String)>,
-    /// Imperfections of channels without effect on predictions, nuisance parameters of every hypothesis: their values
-    /// under the best one.
-    pub imperfections: Vec<Value>,
     /// Process noise: name, level under the nominal model and under the best one.
     pub disturbances: Vec<(String, f64, f64)>,
     /// The residual of the best hypothesis; `None` if no law generalises to other runs.

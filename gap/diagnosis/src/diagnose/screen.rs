@@ -159,8 +159,7 @@ fn others(
     let mut columns: Vec<(usize, Vec<usize>)> = Vec::new();
     for candidate in 0..bench.effects.candidates.len() {
         let own = bench.candidate(candidate);
-        let is_beside = bench.imperfections.iter().any(|one| one.acts == own.acts);
-        if own.brings.is_some() || is_beside || fitted.members.contains(&candidate) {
+        if own.brings.is_some() || fitted.members.contains(&candidate) {
             continue;
         }
         let first = directions.len();

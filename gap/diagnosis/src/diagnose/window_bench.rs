@@ -58,7 +58,7 @@ impl Bench<'_> {
                 .retain(|free| matches!(free.unknown, Unknown::Noise(_)));
             Ok(())
         };
-        let mut bench = Self::of(windows, from.effects, &from.imperfections, quiet)?;
+        let mut bench = Self::of(windows, from.effects, quiet)?;
         bench.whole.clone_from(&from.whole);
         bench.negligible = negligible;
         let independent = independent(windows, &bench.whole);

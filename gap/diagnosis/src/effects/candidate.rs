@@ -52,17 +52,6 @@ impl Acts {
             Self::Items | Self::Parameter(_) | Self::Lag(_) | Self::Delay(_) => None,
         }
     }
-
-    /// The same with the index of its channel mapped; `None` where the channel has no image, or for other effects.
-    pub(crate) fn moved(self, place: impl Fn(usize) -> Option<usize>) -> Option<Self> {
-        match self {
-            Self::Bias(channel) => place(channel).map(Self::Bias),
-            Self::Scale(channel) => place(channel).map(Self::Scale),
-            Self::Late(channel) => place(channel).map(Self::Late),
-            Self::Slow(channel) => place(channel).map(Self::Slow),
-            Self::Items | Self::Parameter(_) | Self::Lag(_) | Self::Delay(_) => None,
-        }
-    }
 }
 
 /// Role of a parameter of a candidate.

@@ -30,11 +30,10 @@ pub(super) fn columns(
     let mut of_columns: Vec<Direction> = Vec::new();
     for candidate in 0..bench.effects.candidates.len() {
         let own = bench.candidate(candidate);
-        let is_beside = bench.imperfections.iter().any(|one| one.acts == own.acts);
         let is_member = fitted.members.contains(&candidate);
         // To first order a lag of a channel is its delay.
         let is_slow = matches!(own.acts, Acts::Slow(_));
-        if own.brings.is_some() || is_slow || is_beside || is_member && is_fixed(bench, candidate) {
+        if own.brings.is_some() || is_slow || is_member && is_fixed(bench, candidate) {
             continue;
         }
         let sides = positive(bench, candidate);

@@ -7,11 +7,12 @@ use appell_codegen::linearisation::{Linearisation, SteadyMotion};
 use appell_codegen::mechanics::finding::Finding;
 use appell_codegen::mechanics::{Derivation, assemble};
 use appell_codegen::program::Program;
-use appell_codegen::{c, python};
+use appell_codegen::python;
 use appell_report::derivation::{self, Page};
 use appell_report::drawing::{Moment, drawing, drawing_at};
 use appell_spec::mechanism::Mechanism;
 
+pub use appell_codegen::c;
 pub use appell_codegen::program::FunctionKind;
 pub use appell_report::derivation::Stage;
 
@@ -135,6 +136,11 @@ impl Source {
     /// C99: a header and a source without allocation.
     pub fn c(&self, options: &c::Options) -> Result<c::Emitted, Error> {
         Ok(c::emit(&self.program(&options.functions)?, options))
+    }
+
+    /// CUDA C++ in one source: the functions, and kernels that evaluate them at many places, one thread each.
+    pub fn cuda(&self, options: &c::Options) -> Result<String, Error> {
+        Ok(c::cuda(&self.program(&options.functions)?, options))
     }
 
     /// A module of Python functions over an array namespace: `numpy`, `jax.numpy`, `casadi` or `sympy`.

@@ -4,6 +4,7 @@
 //! contraction, the results are bit-identical.
 
 mod adapters;
+mod cuda;
 mod types;
 
 use std::fmt::Write as _;
@@ -18,6 +19,7 @@ use crate::tape::{Argument, Tape, Value};
 use crate::text::{Action, Infix, Notation, Statement, Text, math_name, shape};
 
 pub(crate) use adapters::{adapted, adapters};
+pub use cuda::cuda;
 use types::Types;
 
 /// The type of all numbers.
@@ -213,15 +215,7 @@ impl Real {
 /// Emits the functions of a program.
 pub fn emit(program: &Program, options: &Options) -> Emitted {
     let types = Types::new(program, options.real);
-    let functions: Vec<&Function> = (program.functions.iter())
-        .filter(|function| options.functions.contains(&function.kind))
-        .filter(|function| {
-            !function
-                .results
-                .iter()
-                .all(|array| is_empty(program, array))
-        })
-        .collect();
+    let functions: Vec<&Function> = emitted(program, options).collect();
     let bodies: String = functions
         .iter()
         .map(|function| definition(&types, function, &schedule(program, function)))
@@ -257,6 +251,19 @@ pub fn emit(program: &Program, options: &Options) -> Emitted {
         header,
         source,
     }
+}
+
+/// The functions with results.
+fn emitted<'p>(program: &'p Program, options: &'p Options) -> impl Iterator<Item = &'p Function> {
+    let functions = program.functions.iter();
+    functions
+        .filter(|function| options.functions.contains(&function.kind))
+        .filter(|function| {
+            !function
+                .results
+                .iter()
+                .all(|array| is_empty(program, array))
+        })
 }
 
 fn heading(program: &Program) -> String {

@@ -233,6 +233,11 @@ impl<E: Engine> Switching for ProgramModel<E> {
         self.tapes.switch_counts()
     }
 
+    fn is_of_time_alone(&self) -> bool {
+        let of_time = self.tapes.get(FunctionKind::TimeFunctions);
+        of_time.is_none_or(|tape| !tape.has_parameters())
+    }
+
     fn answers(&self, at: At<'_>, answers: &mut [f64]) {
         self.evaluate(FunctionKind::Switches, at, [answers]);
     }

@@ -310,6 +310,13 @@ impl Tape {
         used
     }
 
+    /// Whether the results depend on parameters.
+    pub fn has_parameters(&self) -> bool {
+        let is_parameter =
+            |one: &Operation| matches!(one, Operation::Argument(Argument::Parameter(_)));
+        self.operations.iter().any(is_parameter)
+    }
+
     /// Lengths of the results.
     pub fn lengths(&self) -> Vec<usize> {
         self.results

@@ -35,6 +35,7 @@ mod pairs;
 mod pieces;
 mod range;
 mod rk4;
+mod shared;
 mod sign_changes;
 mod solver;
 mod step_size;
@@ -55,6 +56,7 @@ pub use pairs::{Coefficients, Dop853, Dopri5, EmbeddedPair};
 pub use pieces::{Piece, Sought, Walk};
 pub use range::Range;
 pub use rk4::Rk4;
+pub use shared::SharedTimes;
 pub use solver::Solver;
 pub use switches::{
     BoundFunction, CrossingFunction, Stretch, StretchFunction, SwitchFunction, Switches,

@@ -426,6 +426,10 @@ pub trait Model: Sync {
 pub trait Switching {
     /// Numbers of functions of each kind.
     fn counts(&self) -> Counts;
+    /// Whether the functions of time are the same for all parameters.
+    fn is_of_time_alone(&self) -> bool {
+        false
+    }
     /// Signs and truth values that depend on time alone, such as that of `t < t_brake`: 1 or 0, or a sign. `x` and
     /// `u` are ignored.
     fn answers(&self, at: At<'_>, answers: &mut [f64]);

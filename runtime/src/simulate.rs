@@ -9,7 +9,7 @@ mod validity;
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
     BlockMotion, Cause, Dop853, Dopri5, Ending, Event, EventHit, Failure, IntegrationError,
-    Observer, Options, Outcome, Rk4, Solver, Statistics, Watch,
+    Observer, Options, Outcome, Rk4, SharedTimes, Solver, Statistics, Watch,
 };
 use crate::model::{At, Model};
 use crate::positions::Inconsistent;
@@ -271,7 +271,7 @@ impl<'a> Simulation<'a> {
         let (model, p, span) = (self.model, prepared.p, prepared.span());
         let mut x = prepared.start().to_vec();
         let mut observer = observer(span, &x);
-        let mut watch = prepared.watch(events);
+        let mut watch = prepared.watch(events, &SharedTimes::default());
         let mut u = vec![0.0; model.info().input_len()];
         let rates = |t: f64, x: &[f64], rates: &mut [f64]| {
             inputs.fill(t, x, &mut u);

@@ -59,6 +59,10 @@ impl Switching for InputSwitches {
         self.counts
     }
 
+    fn is_of_time_alone(&self) -> bool {
+        !self.of_time.tape().has_parameters()
+    }
+
     fn answers(&self, at: At<'_>, answers: &mut [f64]) {
         self.answers.values(at.t, at.x, at.p, answers);
     }

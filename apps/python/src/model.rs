@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use appell::control::Request;
+use appell::derivation::c::{self, Real};
 use appell::derivation::{Format, FunctionKind, Stage};
 use appell::setup::Assignment;
 use appell::steady::Question;
@@ -385,6 +386,18 @@ impl Model {
     /// The regressor as a Python module.
     fn _regressor(&self, py: Python<'_>) -> PyResult<String> {
         self.of_source(py, |source| source.python(&[FunctionKind::Regressor]))
+    }
+
+    /// The equations as CUDA C++.
+    fn _cuda(&self, py: Python<'_>, single: bool, integrator: bool) -> PyResult<String> {
+        self.of_source(py, move |source| {
+            let real = if single { Real::Float } else { Real::Double };
+            source.cuda(&c::Options {
+                functions: source.functions()?,
+                real,
+                integrator,
+            })
+        })
     }
 
     /// The equations as a Python module.

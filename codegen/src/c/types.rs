@@ -282,6 +282,29 @@ impl<'a> Types<'a> {
             "/* {heading}\n *\n * All quantities are in SI; units in brackets are those of the spec.\n */\n\
              #ifndef {guard}\n#define {guard}\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n"
         );
+        text += &self.structures();
+        let _ = write!(
+            text,
+            "/* The values of the spec. */\nextern const {} {p}_default_parameters;\n\
+             extern const {} {p}_initial_state;\n\n",
+            self.type_name(Space::Parameters),
+            self.type_name(Space::State),
+            p = self.prefix
+        );
+        text.push_str(prototypes);
+        if integrator {
+            let _ = write!(
+                text,
+                "/* A step of length dt of the classical Runge-Kutta method, with constant inputs. */\n{};\n\n",
+                self.step()
+            );
+        }
+        text + "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
+    }
+
+    /// The structs of arguments and results.
+    pub(super) fn structures(&self) -> String {
+        let mut text = String::new();
         for (space, about) in [
             (Space::Parameters, "Parameters p."),
             (
@@ -307,23 +330,7 @@ impl<'a> Types<'a> {
         ] {
             text.push_str(&self.structure(space, about));
         }
-        let _ = write!(
-            text,
-            "/* The values of the spec. */\nextern const {} {p}_default_parameters;\n\
-             extern const {} {p}_initial_state;\n\n",
-            self.type_name(Space::Parameters),
-            self.type_name(Space::State),
-            p = self.prefix
-        );
-        text.push_str(prototypes);
-        if integrator {
-            let _ = write!(
-                text,
-                "/* A step of length dt of the classical Runge-Kutta method, with constant inputs. */\n{};\n\n",
-                self.step()
-            );
-        }
-        text + "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
+        text
     }
 
     fn step(&self) -> String {
@@ -351,8 +358,8 @@ impl<'a> Types<'a> {
 /// States and rates are structs with the same number of members.
 const STEP: &str = "\
 SIGNATURE {
-    static const REAL part[4] = {0, (REAL)0.5, (REAL)0.5, 1};
-    static const REAL weight[4] = {1, 2, 2, 1};
+    const REAL part[4] = {0, (REAL)0.5, (REAL)0.5, 1};
+    const REAL weight[4] = {1, 2, 2, 1};
     REAL start[COUNT], at[COUNT], k[COUNT], sum[COUNT];
     STATE state;
     RATES rates;

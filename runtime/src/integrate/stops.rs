@@ -1,5 +1,7 @@
 //! Times at which steps must end: the rates are discontinuous or not smooth there.
 
+use std::rc::Rc;
+
 use super::crossings::CrossingSearch;
 use super::dense_output::{DenseOutput, Ends};
 use super::pace::Pace;
@@ -80,7 +82,7 @@ pub(super) struct Stops<'w, 'a> {
     last_change: f64,
     change_before: f64,
     is_endless: bool,
-    pace: Pace,
+    pace: Rc<Pace>,
 }
 
 impl<'w, 'a> Stops<'w, 'a> {
@@ -109,7 +111,7 @@ impl<'w, 'a> Stops<'w, 'a> {
                 let search = SwitchSearch::new(switches.counts);
                 (switches, search)
             }),
-            pace: Pace::default(),
+            pace: Rc::default(),
         }
     }
 
@@ -120,15 +122,22 @@ impl<'w, 'a> Stops<'w, 'a> {
         };
         let (first, count) = (switches.counts.answers, switches.counts.shapes);
         if let Some(within) = switches.within.as_mut().filter(|_| count > 0) {
-            let mut all = vec![Enclosure::UNKNOWN; first + count];
-            let mut known = None;
-            self.pace = Pace::new([start, self.end], count, |i, part| {
-                if known != Some(part) {
-                    within(part, &mut all);
-                    known = Some(part);
-                }
-                all[first + i]
-            });
+            let span = [start, self.end];
+            let mut find = || {
+                let mut all = vec![Enclosure::UNKNOWN; first + count];
+                let mut known = None;
+                Pace::new(span, count, |i, part| {
+                    if known != Some(part) {
+                        within(part, &mut all);
+                        known = Some(part);
+                    }
+                    all[first + i]
+                })
+            };
+            self.pace = match &switches.shared {
+                Some(shared) => shared.pace(span, find),
+                None => Rc::new(find()),
+            };
         }
         self
     }
@@ -213,7 +222,7 @@ impl<'w, 'a> Stops<'w, 'a> {
     /// The first switch by a function of time after `t` and not after `t_new`, to the last digit.
     fn change_within(&mut self, t: f64, t_new: f64) -> Option<Stop> {
         let (switches, search) = self.switches.as_mut()?;
-        let change = search.of_time(switches, [t, t_new])?;
+        let change = search.of_time(switches, [t, t_new], self.end)?;
         if change > self.last_change {
             self.last_change = change;
             self.changes += 1;

@@ -1,5 +1,6 @@
 //! Switching functions of a motion; zeros of those of time alone are located by interval bounds.
 
+use super::shared::{Ahead, SharedTimes};
 use super::sign_changes::neighbours;
 use crate::real::Enclosure;
 use crate::switching::Counts;
@@ -17,6 +18,8 @@ pub struct Switches<'a> {
     pub crossings: CrossingFunction<'a>,
     /// Writes bounds on these. Without it their signs are compared at eighths of a step and at minima of |g|.
     pub along: Option<StretchFunction<'a>>,
+    /// What other motions with the same functions of time know.
+    pub shared: Option<SharedTimes>,
 }
 
 /// A segment of a motion within a step.
@@ -61,6 +64,7 @@ impl<'a> Switches<'a> {
             within: None,
             crossings: Box::new(|_, _, _| {}),
             along: None,
+            shared: None,
         }
     }
 }
@@ -73,12 +77,31 @@ const MOST_INTERVALS: usize = 4096;
 const SHORTEST: f64 = 8.0 * f64::EPSILON;
 const NEAR_ZERO: f64 = 1e-6;
 
-/// Work arrays of the search.
-#[derive(Debug, Default)]
+/// Intervals examined to find out how far no function changes.
+const AHEAD: usize = 64;
+/// Number of steps without a further look ahead after one that did not reach beyond its step.
+const PAUSE: f64 = 8.0;
+
+/// A search for changes of functions of time, with what it knows about the times ahead.
+#[derive(Debug)]
 pub(super) struct SwitchSearch {
     before: Vec<f64>,
     after: Vec<f64>,
     bounds: Vec<Enclosure>,
+    /// From the first of these times to the second no function changes.
+    clear: [f64; 2],
+    /// Whether one changes at the second of them.
+    is_change: bool,
+    /// Time before which a look ahead does not pay.
+    look_after: f64,
+}
+
+/// The result of a search.
+enum Found {
+    /// The first change.
+    Change(f64),
+    /// No change up to this time; beyond it nothing is known.
+    Clear(f64),
 }
 
 impl SwitchSearch {
@@ -87,36 +110,92 @@ impl SwitchSearch {
             before: vec![0.0; counts.answers],
             after: vec![0.0; counts.answers],
             bounds: vec![Enclosure::UNKNOWN; counts.answers + counts.shapes],
+            clear: [f64::INFINITY, f64::NEG_INFINITY],
+            is_change: false,
+            look_after: f64::NEG_INFINITY,
         }
     }
 
-    /// The first time after `t` and not after `t_new` at which a sign or truth value changes, to the last digit.
-    ///
-    /// Where bounds exclude zero from a function there is none, where they exclude zero from its slope there is at
-    /// most one. Any other interval is bisected.
+    /// The first time after `t` and not after `t_new` at which a sign or truth value changes, to the last digit, in a
+    /// motion up to `end`.
     pub(super) fn of_time(
         &mut self,
         switches: &mut Switches<'_>,
         [t, t_new]: [f64; 2],
+        end: f64,
     ) -> Option<f64> {
         if self.before.is_empty() {
             return None;
         }
+        if switches.within.is_none() {
+            (switches.answers)(t, &mut self.before);
+            return by_parts(|s| self.changed(switches, s), [t, t_new]);
+        }
+        if !(self.clear[0] <= t && t < self.clear[1]) && t >= self.look_after {
+            self.look_ahead(switches, [t, t_new], end);
+        }
+        let [from, until] = self.clear;
+        if from <= t && t < until {
+            if self.is_change {
+                return (until <= t_new).then_some(until);
+            }
+            if t_new <= until {
+                return None;
+            }
+        }
+        match self.search(switches, [t, t_new], MOST_INTERVALS) {
+            Found::Change(change) => Some(change),
+            Found::Clear(known) if known >= t_new => None,
+            Found::Clear(known) => by_parts(|s| self.changed(switches, s), [known, t_new]),
+        }
+    }
+
+    /// Finds out how far no function changes: a motion of many steps asks once.
+    fn look_ahead(&mut self, switches: &mut Switches<'_>, [t, t_new]: [f64; 2], end: f64) {
+        let span = [t, end.max(t_new)];
+        let shared = switches.shared.clone();
+        let mut find = || match self.search(switches, span, AHEAD) {
+            Found::Change(until) => Ahead {
+                until,
+                is_change: true,
+            },
+            Found::Clear(until) => Ahead {
+                until,
+                is_change: false,
+            },
+        };
+        let Ahead { until, is_change } = match shared {
+            Some(shared) => shared.ahead(span, find),
+            None => find(),
+        };
+        (self.clear, self.is_change) = ([t, until], is_change);
+        if self.clear[1] <= t_new {
+            self.look_after = t + PAUSE * (t_new - t);
+        }
+    }
+
+    /// Whether the answers differ from those before.
+    fn changed(&mut self, switches: &mut Switches<'_>, t: f64) -> bool {
+        (switches.answers)(t, &mut self.after);
+        let bits = |value: &f64| value.to_bits();
+        !self.before.iter().map(bits).eq(self.after.iter().map(bits))
+    }
+
+    /// The first change after `t` by at most so many bounds.
+    ///
+    /// Where bounds exclude zero from a function there is none, where they exclude zero from its slope there is at
+    /// most one. Any other interval is bisected.
+    fn search(&mut self, switches: &mut Switches<'_>, [t, end]: [f64; 2], most: usize) -> Found {
+        (switches.answers)(t, &mut self.before);
         let count = self.before.len();
-        let (before, after) = (&mut self.before, &mut self.after);
-        (switches.answers)(t, before);
-        let mut changed = |s: f64| {
-            (switches.answers)(s, after);
-            let bits = |value: &f64| value.to_bits();
-            !before.iter().map(bits).eq(after.iter().map(bits))
-        };
-        let Some(within) = &mut switches.within else {
-            return by_parts(changed, [t, t_new]);
-        };
-        let mut waiting = vec![[t, t_new]];
-        for _ in 0..MOST_INTERVALS {
-            let [from, to] = waiting.pop()?;
-            within([from, to], &mut self.bounds);
+        let mut waiting = vec![[t, end]];
+        for _ in 0..most {
+            let Some([from, to]) = waiting.pop() else {
+                return Found::Clear(end);
+            };
+            if let Some(within) = &mut switches.within {
+                within([from, to], &mut self.bounds);
+            }
             let functions = &self.bounds[..count];
             let mut undecided = functions.iter().filter(|of| !of.keeps_its_sign());
             if undecided.clone().next().is_none() {
@@ -124,16 +203,16 @@ impl SwitchSearch {
             }
             let is_short = to - from <= SHORTEST * to.abs().max(NEAR_ZERO);
             if is_short || undecided.all(Enclosure::is_monotonic) {
-                if changed(to) {
-                    return Some(neighbours(changed, [from, to])[1]);
+                if self.changed(switches, to) {
+                    let [_, change] = neighbours(|s| self.changed(switches, s), [from, to]);
+                    return Found::Change(change);
                 }
                 continue;
             }
             let middle = f64::midpoint(from, to);
             waiting.extend([[middle, to], [from, middle]]);
         }
-        let from = waiting.last().map_or(t, |&[from, _]| from);
-        by_parts(changed, [from, t_new])
+        Found::Clear(waiting.last().map_or(end, |&[from, _]| from))
     }
 }
 
@@ -145,4 +224,73 @@ fn by_parts(mut changed: impl FnMut(f64) -> bool, [from, to]: [f64; 2]) -> Optio
     };
     let first = (1..=PARTS).find(|&i| changed(part(i)))?;
     Some(neighbours(changed, [part(first - 1), part(first)])[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+    use crate::real::Real;
+
+    /// Signs of two functions: of time up to 7, and of a wave of 3 rad/s. Counts the evaluations of their bounds.
+    fn two<'c>(bounds: &'c Cell<usize>, shared: Option<SharedTimes>) -> Switches<'c> {
+        let wave = |t: Enclosure| (t * Real::constant(3.0)).sin() - Real::constant(0.5);
+        let mut switches = Switches::of_time(2, |t, answers| {
+            answers[0] = f64::from(u8::from(t < 7.0));
+            answers[1] = ((3.0 * t).sin() - 0.5).signum();
+        });
+        switches.within = Some(Box::new(move |[from, to], functions| {
+            bounds.set(bounds.get() + 1);
+            let t = Enclosure::time(from, to);
+            functions[0] = t - Real::constant(7.0);
+            functions[1] = wave(t);
+        }));
+        switches.shared = shared;
+        switches
+    }
+
+    /// The changes that steps of a length find up to the end.
+    fn changes(switches: &mut Switches<'_>, h: f64, end: f64) -> Vec<f64> {
+        let mut search = SwitchSearch::new(switches.counts);
+        let (mut t, mut found) = (0.0, Vec::new());
+        while t < end {
+            let t_new = (t + h).min(end);
+            t = match search.of_time(switches, [t, t_new], end) {
+                Some(change) => {
+                    found.push(change);
+                    change
+                }
+                None => t_new,
+            };
+        }
+        found
+    }
+
+    #[test]
+    fn steps_of_any_length_find_the_same_changes() {
+        let bounds = Cell::new(0);
+        let expected = changes(&mut two(&bounds, None), 0.5, 10.0);
+        // 3 t = π/6 and 5 π/6, each 2 π later, and 7.
+        assert_eq!(expected.len(), 11, "{expected:?}");
+        for h in [1e-3, 0.03, 2.0, 10.0] {
+            let found = changes(&mut two(&bounds, None), h, 10.0);
+            let bits = |all: &[f64]| all.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&found), bits(&expected), "steps of {h}");
+        }
+    }
+
+    #[test]
+    fn many_steps_and_many_motions_ask_for_few_bounds() {
+        let bounds = Cell::new(0);
+        let found = changes(&mut two(&bounds, None), 1e-3, 10.0);
+        let alone = bounds.get();
+        assert!(alone < 40 * found.len(), "{alone} bounds in 10 000 steps");
+        let shared = SharedTimes::default();
+        for _ in 0..100 {
+            let again = changes(&mut two(&bounds, Some(shared.clone())), 1e-3, 10.0);
+            assert_eq!(again, found);
+        }
+        assert!(bounds.get() <= 2 * alone, "{} bounds", bounds.get());
+    }
 }

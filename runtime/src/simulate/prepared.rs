@@ -8,7 +8,7 @@ use crate::condition::velocity_condition;
 use crate::inputs::ModelInputs;
 use crate::integrate::{
     BlockMotion, Ending, Event, Failure, IntegrationError, Observer, Outcome, Projection, Range,
-    Watch,
+    SharedTimes, Watch,
 };
 use crate::model::{At, Model};
 use crate::positions::{Moving, Positions};
@@ -85,13 +85,17 @@ impl<'a> Prepared<'a> {
     }
 
     /// Switching times, ranges, projection and events. The events of the limits follow the simulation's own events.
-    pub(super) fn watch<'w>(&'w self, mut events: Vec<Event<'w>>) -> Watch<'w> {
+    pub(super) fn watch<'w>(
+        &'w self,
+        mut events: Vec<Event<'w>>,
+        shared: &SharedTimes,
+    ) -> Watch<'w> {
         for event in self.limits.events() {
             events.push(event);
         }
         Watch {
             switching_times: &self.switching_times,
-            switches: switches(self.model, self.p, self.inputs),
+            switches: switches(self.model, self.p, self.inputs, shared),
             ranges: &self.ranges,
             projection: projection(self.model, self.p, self.inputs),
             events,
@@ -161,14 +165,14 @@ pub fn observe_together<'w, O: Observer>(
     integrate: impl FnOnce(&mut [BlockMotion<'w, O>]) -> Vec<Result<Outcome, IntegrationError>>,
 ) -> Vec<Result<(Observed, O), SimulationError>> {
     assert_eq!(prepared.len(), viewers.len(), "a viewer for each motion");
-    let mut own = Vec::new();
+    let (mut own, shared) = (Vec::new(), SharedTimes::default());
     let motions = prepared.iter().zip(viewers).map(|(prepared, viewer)| {
         own.push(viewer.events.len());
         BlockMotion {
             span: prepared.span,
             x: prepared.start.clone(),
             parameters: prepared.p,
-            watch: prepared.watch(viewer.events),
+            watch: prepared.watch(viewer.events, &shared),
             observer: viewer.observer,
         }
     });

@@ -1,16 +1,18 @@
 //! Switching functions of a model and its inputs, in the form required by an integrator.
 
 use crate::inputs::ModelInputs;
-use crate::integrate::{Stretch, Switches};
+use crate::integrate::{SharedTimes, Stretch, Switches};
 use crate::model::{Along, At, Model, Switching};
 use crate::real::Enclosure;
 use crate::switching::Counts;
 
-/// The switching functions of a model and of its inputs, those of the model first.
+/// The switching functions of a model and of its inputs, those of the model first. Motions whose functions of time are the
+/// same share what is known about them.
 pub(super) fn switches<'a>(
     model: &'a dyn Model,
     p: &'a [f64],
     inputs: &'a ModelInputs<'_>,
+    shared: &SharedTimes,
 ) -> Option<Switches<'a>> {
     let both = [model.switching(), inputs.switching()];
     let parts: Vec<(&dyn Switching, Counts)> = both
@@ -28,6 +30,7 @@ pub(super) fn switches<'a>(
     if counts.is_none() {
         return None;
     }
+    let are_same = parts.iter().all(|(part, _)| part.is_of_time_alone());
     let info = model.info();
     // Functions of time alone ignore these arguments.
     let (x, u) = (vec![0.0; info.state_len()], vec![0.0; info.input_len()]);
@@ -37,6 +40,7 @@ pub(super) fn switches<'a>(
         [parts.clone(), parts.clone(), parts.clone(), parts];
     Some(Switches {
         counts,
+        shared: are_same.then(|| shared.clone()),
         answers: Box::new(move |t, mut answers| {
             for (part, counts) in &of_time {
                 let (own, others) = answers.split_at_mut(counts.answers);

@@ -41,16 +41,16 @@ pub(crate) struct Derive {
     /// inputs that are not given stay symbolic
     #[arg(long, value_name = "CONDITIONS")]
     about: Vec<String>,
-    /// C: numbers of 32 bits instead of 64
+    /// C, CUDA: numbers of 32 bits instead of 64
     #[arg(long)]
     float: bool,
-    /// C: a step of the classical Runge-Kutta method as well
+    /// C, CUDA: a step of the classical Runge-Kutta method as well
     #[arg(long)]
     integrator: bool,
-    /// Rust, C, Python: inverse dynamics as a linear function of inertial and load parameters instead
+    /// Rust, C, CUDA, Python: inverse dynamics as a linear function of inertial and load parameters instead
     #[arg(long)]
     regressor: bool,
-    /// Rust, C, Python: derivatives of the rates by the parameters as well where there are more than 64
+    /// Rust, C, CUDA, Python: derivatives of the rates by the parameters as well where there are more than 64
     #[arg(long)]
     parameter_jacobian: bool,
     /// Write to a file instead of standard output
@@ -63,6 +63,7 @@ enum Output {
     Page(Format),
     Rust,
     C,
+    Cuda,
     Python,
     Spec,
 }
@@ -80,7 +81,7 @@ enum Extent {
     Linear,
 }
 
-const FORMATS: [Choice<Output>; 7] = [
+const FORMATS: [Choice<Output>; 8] = [
     (
         "text",
         "Unicode, for a terminal",
@@ -99,6 +100,11 @@ const FORMATS: [Choice<Output>; 7] = [
         Output::C,
     ),
     (
+        "cuda",
+        "CUDA C++, one source: functions, and kernels for many places, one thread each",
+        Output::Cuda,
+    ),
+    (
         "python",
         "Functions for NumPy, JAX, CasADi and SymPy alike",
         Output::Python,
@@ -111,7 +117,7 @@ const FORMATS: [Choice<Output>; 7] = [
 ];
 
 /// Formats by file extension.
-const ENDS: [(&str, Output); 9] = [
+const ENDS: [(&str, Output); 10] = [
     ("txt", Output::Page(Format::Text)),
     ("md", Output::Page(Format::Text)),
     ("tex", Output::Page(Format::Latex)),
@@ -119,6 +125,7 @@ const ENDS: [(&str, Output); 9] = [
     ("htm", Output::Page(Format::Html)),
     ("rs", Output::Rust),
     ("c", Output::C),
+    ("cu", Output::Cuda),
     ("py", Output::Python),
     ("toml", Output::Spec),
 ];
@@ -169,12 +176,12 @@ impl Derive {
             let message = "--integrator needs the rates, which a regressor does not include";
             return Err(Error::Usage(message.to_owned()));
         }
-        if format != Output::C && (self.float || self.integrator) {
-            let message = "--float and --integrator need --format c";
+        if !matches!(format, Output::C | Output::Cuda) && (self.float || self.integrator) {
+            let message = "--float and --integrator need --format c or cuda";
             return Err(Error::Usage(message.to_owned()));
         }
         if self.regressor && format.is_page() {
-            let message = "--regressor needs --format rust, c or python";
+            let message = "--regressor needs --format rust, c, cuda or python";
             return Err(Error::Usage(message.to_owned()));
         }
         let spinner = progress::spinner("deriving the equations of motion");
@@ -184,6 +191,9 @@ impl Derive {
                 let emitted = source.c(&self.c_options(functions?));
                 spinner.finish_and_clear();
                 return self.write_c(&emitted?);
+            }
+            (Output::Cuda, _) => {
+                functions.and_then(|functions| source.cuda(&self.c_options(functions)))
             }
             (Output::Rust, _) => functions.and_then(|functions| source.rust(&functions)),
             (Output::Python, _) => functions.and_then(|functions| source.python(&functions)),
@@ -253,7 +263,7 @@ impl Derive {
             // An unknown extension implies no format.
             (Some(format), Some(None)) => Ok(format),
             _ => Err(Error::Usage(format!(
-                "a derivation as `.{}`: choose a name that ends in .txt (text), .tex (LaTeX), .html, .rs (Rust), .c, .py (Python) or .toml (spec), \
+                "a derivation as `.{}`: choose a name that ends in .txt (text), .tex (LaTeX), .html, .rs (Rust), .c, .cu (CUDA), .py (Python) or .toml (spec), \
                  without another `--format`",
                 extension.unwrap_or_default()
             ))),

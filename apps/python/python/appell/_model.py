@@ -511,6 +511,18 @@ class Model(_appell.Model):
         """The text of a Python module with the equations as functions over an array namespace."""
         return self._module()
 
+    def cuda(self, *, single: bool = False, integrator: bool = False) -> str:
+        """The equations as CUDA C++ in one source: functions for processor and graphics card, and kernels such as
+        `pendulum_rates_places` that evaluate them at many places, one thread each. Its head tells the layout of the arrays.
+
+        With CuPy, for n places whose states are the columns of `x`:
+
+            code = cupy.RawModule(code=m.cuda(), options=("--fmad=false",))
+            rates = cupy.empty_like(x)
+            code.get_function("pendulum_rates_places")((n // 256 + 1,), (256,), (n, 0.0, p, 0, x, u, rates))
+        """
+        return self._cuda(single, integrator)
+
     @cached_property
     def regressor_module(self) -> str:
         """The text of a Python module with one function, `regressor(xp, t, x, u, p, accelerations)`: Y, r and π of inverse

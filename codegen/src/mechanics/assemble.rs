@@ -1,23 +1,19 @@
 //! Assembles the derived equations as the functions of a program.
 
+mod functions;
 mod labels;
 
-use std::sync::Arc;
-
 use appell_runtime::model::{ModelInfo, Quantity};
-use appell_spec::expr;
 use appell_spec::mechanism::{ConstraintId, FrameId, Mechanism};
 
 use super::Derivation;
-use super::algebra::MOST_OF_PROGRAM;
-use super::arguments::{function_arguments, input_symbols};
+use super::arguments::input_symbols;
 use super::finding::Outcome;
 use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energies, acceleration_energy,
     kinetic_energy_by_velocity, motions_in_ground,
 };
 use super::glossary;
-use super::info::{info, tabulated_inputs};
 use super::letters;
 use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
@@ -26,122 +22,12 @@ use super::positions::Positions;
 use super::reactions;
 use super::recursion::Recursion;
 use super::systems::systems;
-use crate::program::{
-    Arguments, Array, Function, FunctionKind, Hint, Layout, Program, Space, Term,
-};
+use crate::program::{Array, Function, FunctionKind, Layout, Space};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
+pub use functions::{Functions, program};
 pub(super) use labels::by_speed;
-use labels::{Source, embedded, shown_file};
-
-/// The functions of a derived mechanism, each derived on request and from the equations of motion alone.
-pub struct Functions {
-    derivation: Derivation,
-    mechanism: Mechanism,
-    info: ModelInfo,
-    arguments: Arguments,
-    hints: Arc<[Hint]>,
-    /// Meanings of the names of hints.
-    meanings: Vec<Term>,
-    systems: Vec<usize>,
-}
-
-impl Functions {
-    /// The functions of a derivation.
-    pub fn new(mut derivation: Derivation, mechanism: Mechanism) -> Self {
-        let signals = tabulated_inputs(&mechanism);
-        let mut info = info(&derivation, &mechanism, &signals);
-        let graph = &derivation.algebra.graph;
-        let mut of_time = graph.has_as_part(derivation.symbols.time);
-        for output in &mechanism.outputs {
-            output
-                .value
-                .visit(&mut |quantity| of_time |= quantity == expr::Quantity::Time);
-        }
-        info.explicit_time = of_time;
-        let systems = systems(graph, &derivation.rates());
-        let systems = systems.into_iter().map(|(size, _)| size).collect();
-        let arguments = function_arguments(&derivation, &info);
-        let (hints, meanings) = derivation.hints(&mechanism, &arguments);
-        Self {
-            derivation,
-            mechanism,
-            info,
-            arguments,
-            hints: hints.into(),
-            meanings,
-            systems,
-        }
-    }
-
-    /// Names, units and sizes of the model.
-    pub fn info(&self) -> &ModelInfo {
-        &self.info
-    }
-
-    /// The number of expressions of the derivation.
-    pub fn expressions(&self) -> usize {
-        self.derivation.algebra.graph.len()
-    }
-
-    /// The mechanism.
-    pub fn mechanism(&self) -> &Mechanism {
-        &self.mechanism
-    }
-
-    /// Dependent coordinates, one per position constraint.
-    pub fn dependent(&self) -> &[usize] {
-        &self.derivation.positions.dependent
-    }
-
-    /// Sizes of the linear systems of several unknowns that are solved with pivoting to compute the rates.
-    pub fn systems(&self) -> &[usize] {
-        &self.systems
-    }
-
-    /// The program with the functions `kinds`; those of outputs or switches are omitted if there are none.
-    pub fn program(&self, kinds: &[FunctionKind]) -> Outcome<Program> {
-        let functions = kinds.iter().map(|&kind| self.function(kind));
-        let functions: Vec<Option<Function>> = functions.collect::<Outcome<_>>()?;
-        Ok(Program {
-            info: self.info.clone(),
-            systems: self.systems.clone(),
-            file: shown_file(&self.mechanism.file).to_owned(),
-            arguments: self.arguments.clone(),
-            dependent: self.dependent().to_vec(),
-            hints: self.hints.clone(),
-            functions: functions.into_iter().flatten().collect(),
-        })
-    }
-
-    /// A function, unless the mechanism has no such results.
-    fn function(&self, kind: FunctionKind) -> Outcome<Option<Function>> {
-        let mut derivation = self.derivation.clone();
-        let results = derivation.results(&self.mechanism, &self.info, kind)?;
-        derivation.algebra.holds_at_most(MOST_OF_PROGRAM)?;
-        if kind.may_lack() && results.iter().all(|array| array.entries.is_empty()) {
-            return Ok(None);
-        }
-        let function = Function::new(kind, results);
-        let mut function = derivation.staged(&self.mechanism, function);
-        if kind == FunctionKind::Rates {
-            // Last, so that display does not change the order of any computation.
-            function.equations = derivation.equations();
-        }
-        function.glossary.extend(self.meanings.iter().cloned());
-        let own = derivation.own_symbols(kind);
-        Ok(Some(function.over(Arc::new(derivation.algebra.graph), own)))
-    }
-}
-
-/// The program of a derivation, with the functions `kinds`; see [`Functions::program`].
-pub fn program(
-    derivation: Derivation,
-    mechanism: &Mechanism,
-    kinds: &[FunctionKind],
-) -> Outcome<Program> {
-    Functions::new(derivation, mechanism.clone()).program(kinds)
-}
+use labels::{Source, embedded};
 
 impl Derivation {
     /// The results of one function.

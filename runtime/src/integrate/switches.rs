@@ -169,7 +169,7 @@ impl SwitchSearch {
             None => find(),
         };
         (self.clear, self.is_change) = ([t, until], is_change);
-        if self.clear[1] <= t_new {
+        if !is_change && until <= t_new {
             self.look_after = t + PAUSE * (t_new - t);
         }
     }
@@ -250,12 +250,13 @@ mod tests {
         switches
     }
 
-    /// The changes that steps of a length find up to the end.
-    fn changes(switches: &mut Switches<'_>, h: f64, end: f64) -> Vec<f64> {
+    /// The changes that steps of a length find up to the end; the first step after each is tried with `first`.
+    fn changes(switches: &mut Switches<'_>, [first, h]: [f64; 2], end: f64) -> Vec<f64> {
         let mut search = SwitchSearch::new(switches.counts);
         let (mut t, mut found) = (0.0, Vec::new());
         while t < end {
-            let t_new = (t + h).min(end);
+            let is_first = found.last().is_none_or(|&last| t <= last);
+            let t_new = (t + if is_first { first } else { h }).min(end);
             t = match search.of_time(switches, [t, t_new], end) {
                 Some(change) => {
                     found.push(change);
@@ -270,25 +271,25 @@ mod tests {
     #[test]
     fn steps_of_any_length_find_the_same_changes() {
         let bounds = Cell::new(0);
-        let expected = changes(&mut two(&bounds, None), 0.5, 10.0);
+        let expected = changes(&mut two(&bounds, None), [0.5; 2], 10.0);
         // 3 t = π/6 and 5 π/6, each 2 π later, and 7.
         assert_eq!(expected.len(), 11, "{expected:?}");
-        for h in [1e-3, 0.03, 2.0, 10.0] {
+        for h in [[1e-3; 2], [0.03; 2], [2.0, 1e-2], [10.0; 2]] {
             let found = changes(&mut two(&bounds, None), h, 10.0);
             let bits = |all: &[f64]| all.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
-            assert_eq!(bits(&found), bits(&expected), "steps of {h}");
+            assert_eq!(bits(&found), bits(&expected), "steps of {h:?}");
         }
     }
 
     #[test]
     fn many_steps_and_many_motions_ask_for_few_bounds() {
         let bounds = Cell::new(0);
-        let found = changes(&mut two(&bounds, None), 1e-3, 10.0);
+        let found = changes(&mut two(&bounds, None), [4.0, 1e-3], 10.0);
         let alone = bounds.get();
         assert!(alone < 40 * found.len(), "{alone} bounds in 10 000 steps");
         let shared = SharedTimes::default();
         for _ in 0..100 {
-            let again = changes(&mut two(&bounds, Some(shared.clone())), 1e-3, 10.0);
+            let again = changes(&mut two(&bounds, Some(shared.clone())), [4.0, 1e-3], 10.0);
             assert_eq!(again, found);
         }
         assert!(bounds.get() <= 2 * alone, "{} bounds", bounds.get());

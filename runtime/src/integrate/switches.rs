@@ -234,7 +234,7 @@ mod tests {
     use crate::real::Real;
 
     /// Signs of two functions: of time up to 7, and of a wave of 3 rad/s. Counts the evaluations of their bounds.
-    fn two<'c>(bounds: &'c Cell<usize>, shared: Option<SharedTimes>) -> Switches<'c> {
+    fn two(bounds: &Cell<usize>, shared: Option<SharedTimes>) -> Switches<'_> {
         let wave = |t: Enclosure| (t * Real::constant(3.0)).sin() - Real::constant(0.5);
         let mut switches = Switches::of_time(2, |t, answers| {
             answers[0] = f64::from(u8::from(t < 7.0));

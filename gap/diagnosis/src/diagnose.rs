@@ -4,6 +4,7 @@
 //! ```text
 //!          --split--> training runs | held-out runs, which no fit reads
 //!          --effects--> candidates: every effect at every site, derived at once with sizes of zero
+//!          --stated--> gains and scales with tolerances become parameters of the spec
 //!          --reading--> torques of robots: means about their rows, or readings at them
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
 //!          --sets--> expected gain of every set of candidates, to first order

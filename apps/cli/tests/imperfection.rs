@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use crate::rig::{dry_with_two_sensors, low_pass, viscous};
-use crate::support::{Folder, number};
+use crate::support::{Folder, Outcome, number};
 
 const BIAS: f64 = 2e-3;
 
@@ -62,7 +62,13 @@ fn a_filter_of_a_sensor_is_told_from_a_delay() {
     assert!(closed > 0.95, "{closed}");
 }
 
-/// The relative error of the logged forces of a carriage with viscous friction, which are `part` of the true ones.
+/// Writes the leading hypothesis to `better.toml`.
+fn applied(folder: &Folder) -> Outcome {
+    let files = ["--report", "report.json", "-o", "better.toml"];
+    folder.done(&[&["apply", "carriage"][..], &files].concat())
+}
+
+/// A carriage with viscous friction whose logged forces are a `part` of the true ones.
 fn misread(part: f64, stated: &str) -> Folder {
     let folder = viscous(0.4);
     for name in ["a.csv", "b.csv", "c.csv"] {
@@ -108,14 +114,7 @@ fn a_gain_within_its_tolerance_is_fitted_and_no_cause() {
         shown.stdout
     );
     // The spec gets both, and predicts the recordings.
-    let summary = folder.done(&[
-        "apply",
-        "carriage",
-        "--report",
-        "report.json",
-        "-o",
-        "better.toml",
-    ]);
+    let summary = applied(&folder);
     assert!(
         summary
             .stdout
@@ -181,14 +180,7 @@ fn a_scale_within_its_tolerance_is_fitted_and_no_cause() {
         "{}",
         shown.stdout
     );
-    let summary = folder.done(&[
-        "apply",
-        "carriage",
-        "--report",
-        "report.json",
-        "-o",
-        "better.toml",
-    ]);
+    let summary = applied(&folder);
     assert!(
         summary
             .stdout

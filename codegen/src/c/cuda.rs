@@ -91,8 +91,8 @@ fn about(types: &Types<'_>, functions: &[&Function], options: &Options) -> Strin
     let mut text = format!(
         " * Kernels NAME_FUNCTION_places(n, t, p, each, x, u, results), one thread a place. Quantity k of place i is at\n \
          * [k * n + i] of an array, entry (j, k) of a matrix with c columns at [(j * c + k) * n + i]. If each is 0, all\n \
-         * places have the parameters p[k]. Without contraction the bits are those of the C\n \
-         * source. All quantities are in SI.\n \
+         * places have the parameters p[k]. As C99 and without contraction the bits are those\n \
+         * of the C source; elementary functions of a card may differ in the last place. All quantities are in SI.\n \
          *\n * x: {}\n * u: {}\n * p: {}\n",
         names(&info.states),
         names(&info.inputs),

@@ -42,8 +42,10 @@ pub(super) fn place(
     let candidate = bench.candidate(sizes.candidate);
     let first = sizes.values.first().copied().unwrap_or(0.0);
     let at = |list: &[usize], input| list.iter().position(|own| *own == input).unwrap_or(0);
-    let stated = values.to_vec();
-    let now = |index: usize| stated[index];
+    let now = match candidate.acts {
+        Acts::Parameter(index) => values[index],
+        _ => 0.0,
+    };
     let mut set = |unknown, value: f64| -> Result<(), DiagnoseError> {
         values[layout.place(unknown)?] = value;
         Ok(())
@@ -73,7 +75,7 @@ pub(super) fn place(
         Acts::Parameter(index) => {
             let most = wrong(bench.set.parameters[index].value);
             let [low, high] = bench.effects.info().parameters[index].range;
-            let moved = now(index) + first.clamp(-most, most);
+            let moved = now + first.clamp(-most, most);
             set(Unknown::Parameter(index), moved.clamp(low, high))?;
         }
         Acts::Bias(channel) => set(Unknown::Bias(channel), first)?,

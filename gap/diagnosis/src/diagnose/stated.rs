@@ -18,14 +18,21 @@ pub(super) struct Stated {
 impl Stated {
     /// `None` where no line states such a tolerance.
     pub(super) fn of(set: &DataSet, all: &[Candidate]) -> Result<Option<Self>, DiagnoseError> {
-        let stated = set.channels.iter().filter_map(|channel| {
-            let site = site(set, channel)?;
-            let is_own = |own: &&Candidate| {
+        let (mut candidates, mut places) = (Vec::new(), Vec::new());
+        let mut deviations = Vec::new();
+        for (place, channel) in set.channels.iter().enumerate() {
+            let of = site(set, channel).zip(channel.tolerance);
+            let is_own = |own: &&Candidate, site| {
                 own.has_tolerance && own.site == site && !own.parameters.is_empty()
             };
-            Some((all.iter().find(is_own)?.clone(), channel.tolerance?))
-        });
-        let (candidates, deviations): (Vec<Candidate>, Vec<f64>) = stated.unzip();
+            if let Some((site, std)) = of
+                && let Some(own) = all.iter().find(|own| is_own(own, site))
+            {
+                candidates.push(own.clone());
+                deviations.push(std);
+                places.push(place);
+            }
+        }
         if candidates.is_empty() {
             return Ok(None);
         }
@@ -35,16 +42,22 @@ impl Stated {
         let tolerances: Vec<(&str, f64)> = names.iter().copied().zip(deviations).collect();
         let text = set_deviations(&text, &tolerances).map_err(ModelError::from)?;
         let file = set.spec.file.clone();
-        let set = set.rebound(&Spec { file, text })?;
+        let mut set = set.rebound(&Spec { file, text })?;
+        for place in places {
+            // The spec has it now: it is not one of the readings as well.
+            set.channels[place].tolerance = None;
+        }
         Ok(Some(Self { set, candidates }))
     }
 
     /// Recordings of the rig with the new spec.
     pub(super) fn bound(&self, set: &DataSet) -> DataSet {
-        DataSet {
-            spec: self.set.spec.clone(),
-            ..set.bound_to(&self.set.mechanism)
+        let mut bound = set.bound_to(&self.set.mechanism);
+        bound.spec = self.set.spec.clone();
+        for (channel, own) in bound.channels.iter_mut().zip(&self.set.channels) {
+            channel.tolerance = own.tolerance;
         }
+        bound
     }
 
     /// The index of the parameter of a candidate.

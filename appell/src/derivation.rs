@@ -143,6 +143,13 @@ impl Source {
         Ok(c::cuda(&self.program(&options.functions)?, options))
     }
 
+    /// The same, with the kernels in it.
+    #[cfg(feature = "cuda")]
+    pub(crate) fn kernels(&self, options: &c::Options) -> Result<(String, Vec<c::Kernel>), Error> {
+        let program = self.program(&options.functions)?;
+        Ok((c::cuda(&program, options), c::kernels(&program, options)))
+    }
+
     /// A module of Python functions over an array namespace: `numpy`, `jax.numpy`, `casadi` or `sympy`.
     pub fn python(&self, functions: &[FunctionKind]) -> Result<String, Error> {
         Ok(python::module(&self.program(functions)?, functions))

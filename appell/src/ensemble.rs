@@ -20,8 +20,11 @@
 //! # Ok::<(), appell::Error>(())
 //! ```
 
+#[cfg(feature = "cuda")]
+mod card;
 mod engine;
 mod factors;
+mod kernel;
 mod layout;
 mod noise;
 mod observer;
@@ -75,6 +78,9 @@ pub struct Ensemble {
     laws: usize,
     /// Hash of everything that the rows depend on.
     hash: String,
+    /// The motions on a graphics card, if it computes them.
+    #[cfg(feature = "cuda")]
+    card: Option<card::OnCard>,
 }
 
 /// The kept quantities of a motion, and their columns.
@@ -259,7 +265,31 @@ impl Ensemble {
             choices,
             design,
             study,
+            #[cfg(feature = "cuda")]
+            card: None,
         })
+    }
+
+    /// The same study with its motions on the first graphics card of this machine. Its rows agree with those of
+    /// processors within the tolerances of the study, and have chunks of their own.
+    #[cfg(feature = "cuda")]
+    pub fn on_card(mut self) -> Result<Self, Error> {
+        self.card = Some(card::OnCard::new(&self)?);
+        self.hash.push_str("-card");
+        Ok(self)
+    }
+
+    /// An error: this library is built without graphics cards.
+    #[cfg(not(feature = "cuda"))]
+    pub fn on_card(self) -> Result<Self, Error> {
+        let message = "this program was built without graphics cards; build it with the feature `cuda`";
+        Err(Error::request(Field::Device, message))
+    }
+
+    /// The sources in CUDA C++ of its motions, one for each spec and law, laws varying fastest.
+    pub fn cuda(&self) -> Result<Vec<String>, Error> {
+        let variants = self.variants.iter();
+        variants.map(|variant| kernel::source(self, variant)).collect()
     }
 
     /// The study.
@@ -296,6 +326,12 @@ impl Ensemble {
         let usual = cases
             .div_ceil(CHUNKS)
             .clamp(LEAST_PER_CHUNK, MOST_PER_CHUNK);
+        // A card computes many at once.
+        #[cfg(feature = "cuda")]
+        let usual = match &self.card {
+            Some(_) => usual.max(card::TOGETHER.min(cases)),
+            None => usual,
+        };
         let own = self.study.chunk.as_ref().map(|chunk| chunk.value);
         Chunks {
             study: self.hash.clone(),
@@ -366,7 +402,19 @@ impl Ensemble {
     ) -> Result<Ended, Error> {
         let chunks = self.chunks(running.chunk)?;
         let jobs = running.threads()?;
-        run::run(self, &chunks, missing, store, jobs, watch).map_err(Error::computation)
+        #[cfg(feature = "cuda")]
+        let go_on = || (watch.go_on)() && self.card.as_ref().is_none_or(|card| card.failure().is_none());
+        #[cfg(feature = "cuda")]
+        let watch = Watch {
+            go_on: &go_on,
+            ..watch
+        };
+        let ended = run::run(self, &chunks, missing, store, jobs, watch);
+        #[cfg(feature = "cuda")]
+        if let Some(failure) = self.card.as_ref().and_then(card::OnCard::failure) {
+            return Err(Error::computation(failure));
+        }
+        ended.map_err(Error::computation)
     }
 
     /// The statistics of the rows in a store.

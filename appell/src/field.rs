@@ -67,6 +67,7 @@ fields! {
     Study "study" "Study of an ensemble.",
     Chunk "chunk" "Cases of a chunk of an ensemble.",
     Jobs "jobs" "Threads of an ensemble.",
+    Device "device" "What computes the motions of an ensemble.",
 }
 
 impl fmt::Display for Field {

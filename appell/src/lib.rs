@@ -33,6 +33,8 @@ mod batch;
 #[cfg(feature = "cache")]
 pub mod cache;
 pub mod capture;
+#[cfg(feature = "cuda")]
+pub mod card;
 pub mod cases;
 pub mod check;
 pub mod comparison;

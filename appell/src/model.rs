@@ -116,10 +116,12 @@ impl Model {
     /// The operations of the rates, which closed loops are made from.
     pub(crate) fn rates(&self) -> Result<&Tape, Error> {
         let missing = || Error::request(Field::Model, "its rates cannot be derived");
-        self.made()?
-            .tapes()
-            .get(FunctionKind::Rates)
-            .ok_or_else(missing)
+        self.tape(FunctionKind::Rates)?.ok_or_else(missing)
+    }
+
+    /// The operations of a function, if the model has it.
+    pub(crate) fn tape(&self, function: FunctionKind) -> Result<Option<&Tape>, Error> {
+        Ok(self.made()?.tapes().get(function))
     }
 
     /// Derives functions now, in parallel, which a first use derives otherwise; returns why one of them is impossible.

@@ -5,6 +5,7 @@
 
 mod adapters;
 mod cuda;
+mod motion;
 mod types;
 
 use std::fmt::Write as _;
@@ -19,7 +20,8 @@ use crate::tape::{Argument, Tape, Value};
 use crate::text::{Action, Infix, Notation, Statement, Text, math_name, shape};
 
 pub(crate) use adapters::{adapted, adapters};
-pub use cuda::cuda;
+pub use cuda::{Kernel, cuda, kernels};
+pub use motion::{Followed, Motion, motion};
 use types::Types;
 
 /// The type of all numbers.

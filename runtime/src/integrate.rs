@@ -58,7 +58,10 @@ pub use range::Range;
 pub use rk4::Rk4;
 pub use shared::SharedTimes;
 pub use solver::Solver;
+pub use step_size::Control;
+pub use stops::Timetable;
 pub use switches::{
     BoundFunction, CrossingFunction, Stretch, StretchFunction, SwitchFunction, Switches,
 };
+pub use tableau::Row;
 pub use watch::{NoObserver, Observer, Projection, ProjectionFunction, Step, Watch};

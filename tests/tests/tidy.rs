@@ -16,6 +16,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("runtime", &[]),
     ("codegen", &["appell-spec", "appell-runtime"]),
     ("codegen/vector", &["appell-codegen", "appell-runtime"]),
+    ("codegen/card", &[]),
     ("generated", &["appell-runtime", "appell-codegen"]),
     ("analysis/spectra", &[]),
     ("analysis/stability", &["appell-runtime", "appell-spectra"]),
@@ -65,6 +66,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-files",
             "appell-ensemble",
             "appell-spec",
+            "appell-card",
             "appell-codegen",
             "appell-models",
             "appell-runtime",
@@ -131,11 +133,12 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Crates below the command line: they name no mechanism and no flag.
-const NAME_NO_MECHANISM: [&str; 17] = [
+const NAME_NO_MECHANISM: [&str; 18] = [
     "model_spec/files",
     "model_spec",
     "codegen",
     "codegen/vector",
+    "codegen/card",
     "runtime",
     "analysis/spectra",
     "analysis/stability",
@@ -567,8 +570,9 @@ fn only_emit_writes_rust_and_only_jit_writes_machine_code() {
 }
 
 /// Where machine code is written to memory and called, or calls routines.
-const CALL_MACHINE_CODE: [&str; 5] = [
+const CALL_MACHINE_CODE: [&str; 6] = [
     "codegen/src/jit",
+    "codegen/card/src/kernel.rs",
     "codegen/vector/src/function.rs",
     "codegen/vector/src/machine.rs",
     "codegen/vector/src/routines.rs",

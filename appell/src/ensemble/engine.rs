@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use appell_ensemble::rows::{Column, Role, Rows};
 use appell_ensemble::run::{Engine, Watch};
-use appell_ensemble::study::{Kept, Method};
+use appell_ensemble::study::{Kept, Method, Motion};
 use appell_runtime::Simulation;
 use appell_runtime::inputs::ModelInputs;
 use appell_runtime::integrate::{
@@ -38,6 +38,10 @@ impl Engine for Ensemble {
     }
 
     fn run(&self, cases: Range<u64>, watch: &Watch<'_>, rows: &mut Rows) {
+        #[cfg(feature = "cuda")]
+        if let Some(card) = &self.card {
+            return card.run(self, cases, watch, rows);
+        }
         let mut solvers = Solvers::default();
         let mut next = cases.start;
         let times = self.noise_times();
@@ -53,12 +57,7 @@ impl Engine for Ensemble {
                 // Motions may have been interrupted.
                 return;
             }
-            for mut row in motions {
-                if !row.reason.is_empty() {
-                    self.forget(&mut row.values);
-                }
-                rows.push(&row.values, row.end, &row.reason);
-            }
+            self.push(motions, rows);
             (watch.done)(some.end - some.start);
             next = some.end;
         }
@@ -82,22 +81,26 @@ pub(super) struct Row {
 }
 
 impl Row {
-    fn fail(&mut self, reason: String) {
-        (self.end, self.reason) = (0.0, reason);
+    pub(super) fn fail(&mut self, reason: String) {
+        self.end_at(0.0, reason);
+    }
+
+    pub(super) fn end_at(&mut self, end: f64, reason: String) {
+        (self.end, self.reason) = (end, reason);
     }
 }
 
 /// Initial conditions of a case.
-struct Start {
-    parameters: Vec<f64>,
+pub(super) struct Start {
+    pub(super) parameters: Vec<f64>,
     initial: Vec<f64>,
 }
 
 /// A case with its initial conditions.
-struct Ride<'r> {
+pub(super) struct Ride<'r> {
     draws: Draws<'r>,
-    start: Start,
-    row: &'r mut Row,
+    pub(super) start: Start,
+    pub(super) row: &'r mut Row,
 }
 
 impl Ensemble {
@@ -114,12 +117,32 @@ impl Ensemble {
         solvers: &mut Solvers,
         go_on: &(dyn Fn() -> bool + Sync),
     ) -> Vec<Row> {
+        let mut rows = self.empty_rows(task, draws.len());
+        let rides = self.drawn(draws, &mut rows);
+        for (variant, mut rides) in self.variants.iter().zip(rides) {
+            if !rides.is_empty() {
+                self.ride(task, variant, &mut rides, solvers, go_on);
+            }
+        }
+        rows
+    }
+
+    /// Rows without values.
+    pub(super) fn empty_rows(&self, task: &Task, count: usize) -> Vec<Row> {
         let empty = || Row {
             values: vec![f64::NAN; task.layout.columns.len()],
             end: 0.0,
             reason: String::new(),
         };
-        let mut rows: Vec<Row> = draws.iter().map(|_| empty()).collect();
+        std::iter::repeat_with(empty).take(count).collect()
+    }
+
+    /// The motions of each variant; writes their factors, and the reason where one cannot start.
+    pub(super) fn drawn<'r>(
+        &self,
+        draws: &[Draws<'r>],
+        rows: &'r mut [Row],
+    ) -> Vec<Vec<Ride<'r>>> {
         let mut rides: Vec<Vec<Ride<'_>>> = self.variants.iter().map(|_| Vec::new()).collect();
         for (row, &draws) in rows.iter_mut().zip(draws) {
             let variant = self.draw(draws, &mut row.values);
@@ -129,12 +152,17 @@ impl Ensemble {
                 Err(reason) => row.fail(reason),
             }
         }
-        for (variant, mut rides) in self.variants.iter().zip(rides) {
-            if !rides.is_empty() {
-                self.ride(task, variant, &mut rides, solvers, go_on);
+        rides
+    }
+
+    /// Appends rows, without the values that an early end leaves open.
+    pub(super) fn push(&self, all: Vec<Row>, rows: &mut Rows) {
+        for mut row in all {
+            if !row.reason.is_empty() {
+                self.forget(&mut row.values);
             }
+            rows.push(&row.values, row.end, &row.reason);
         }
-        rows
     }
 
     /// Writes the factors of a case; returns the number of its variant.
@@ -283,7 +311,7 @@ impl Ensemble {
     }
 
     /// The inputs of a motion.
-    fn source<'v>(&self, variant: &'v Variant, ride: &Ride<'v>) -> Noisy<'v> {
+    pub(super) fn source<'v>(&self, variant: &'v Variant, ride: &Ride<'v>) -> Noisy<'v> {
         let until = self.study.motion.t_end;
         Noisy {
             controller: variant.wiring.controller(
@@ -299,7 +327,7 @@ impl Ensemble {
         }
     }
 
-    fn simulation<'v>(
+    pub(super) fn simulation<'v>(
         &self,
         variant: &'v Variant,
         start: &Start,
@@ -333,12 +361,7 @@ impl Ensemble {
         viewers: Vec<Viewer<'w, Keeper<'w>>>,
     ) -> Vec<Result<(Observed, Keeper<'w>), SimulationError>> {
         let motion = &self.study.motion;
-        let options = Options::with_tolerances(motion.rtol, motion.atol);
-        let max_steps = motion.max_steps.and_then(|most| usize::try_from(most).ok());
-        let options = Options {
-            max_steps: max_steps.unwrap_or(options.max_steps),
-            ..options
-        };
+        let options = options(motion);
         let rates = closed.rates_of(|which, t, x, u| sources[which].fill_outside(t, x, u));
         observe_together(prepared, viewers, |motions| match motion.method {
             Method::Dopri5 => solvers.dopri5.integrate(rates, motions, &options),
@@ -354,6 +377,16 @@ impl Ensemble {
             counts.sum()
         });
         counts.max().unwrap_or(0)
+    }
+}
+
+/// Tolerances of the motions, and the limit of their steps.
+pub(super) fn options(motion: &Motion) -> Options {
+    let options = Options::with_tolerances(motion.rtol, motion.atol);
+    let max_steps = motion.max_steps.and_then(|most| usize::try_from(most).ok());
+    Options {
+        max_steps: max_steps.unwrap_or(options.max_steps),
+        ..options
     }
 }
 
@@ -455,14 +488,18 @@ fn start(variant: &Variant, factors: &[f64]) -> Result<Start, String> {
 
 /// Why a motion ended early, as one of few texts; empty if it did not.
 fn reason(observed: &Observed, info: &ModelInfo) -> String {
-    let cause = match &observed.ending {
-        Ok(Ending::Finished | Ending::Event(_)) => return String::new(),
+    match &observed.ending {
+        Ok(Ending::Finished | Ending::Event(_)) => String::new(),
         Ok(Ending::Stopped) => {
             let breach = observed.breaches.last();
-            return breach.map_or_else(String::new, |breach| breach.describe(info));
+            breach.map_or_else(String::new, |breach| breach.describe(info))
         }
-        Err(cause) => cause,
-    };
+        Err(cause) => cause_of(cause, info),
+    }
+}
+
+/// The cause of an early end, without its numbers.
+pub(super) fn cause_of(cause: &Cause, info: &ModelInfo) -> String {
     let name = |index: usize| info.states.get(index).map_or("?", |q| q.name.as_ref());
     match *cause {
         Cause::NonFinite { component } => {
@@ -476,7 +513,7 @@ fn reason(observed: &Observed, info: &ModelInfo) -> String {
 }
 
 /// Why a motion cannot start, without its numbers.
-fn told(error: &SimulationError, variant: &Variant) -> String {
+pub(super) fn told(error: &SimulationError, variant: &Variant) -> String {
     let info = variant.model.info();
     match error {
         SimulationError::Inconsistent { source, .. } => {

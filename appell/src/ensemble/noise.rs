@@ -50,9 +50,18 @@ impl Noise {
         usize::try_from(self.place(until)).map_or(usize::MAX, |last| last.saturating_add(1))
     }
 
+    /// The interval in s for which a number is held.
+    pub(super) fn every(&self) -> f64 {
+        self.every
+    }
+
     /// The value at a time; `from` is the index of its first score.
     fn value(&self, draws: Draws<'_>, from: usize, t: f64) -> f64 {
-        let place = self.place(t);
+        self.number(draws, from, self.place(t))
+    }
+
+    /// A number by its place among those of a motion.
+    fn number(&self, draws: Draws<'_>, from: usize, place: u64) -> f64 {
         let score = match draws {
             Draws::Case(case) => normal::quantile(self.stream.uniform(case, place)),
             Draws::Scores(scores) => {
@@ -96,6 +105,17 @@ impl Noisy<'_> {
             from = from.saturating_add(noise.count(self.until));
             (noise.onto, value)
         })
+    }
+
+    /// Appends the numbers of all noises, one noise after another.
+    #[cfg(feature = "cuda")]
+    pub(super) fn numbers(&self, numbers: &mut Vec<f64>) {
+        let mut from = self.drawn;
+        for noise in self.noises {
+            let count = noise.count(self.until);
+            numbers.extend((0..count as u64).map(|place| noise.number(self.draws, from, place)));
+            from = from.saturating_add(count);
+        }
     }
 
     /// Writes the noises at a time to parameters.

@@ -1,7 +1,7 @@
 //! Equations of motion with their inputs substituted, for eight motions at once.
 
 use appell_codegen::jit::{Elementary, Sizes};
-use appell_codegen::tape::{Seen, Tape, closed_loop};
+use appell_codegen::tape::{Seen, Tape};
 use appell_runtime::integrate::Places;
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_vector::{Target, VectorError, VectorFunction};
@@ -36,28 +36,25 @@ pub(crate) struct ClosedLoop {
 }
 
 impl ClosedLoop {
+    /// From the rates as a function of what is outside, with `seen` disturbances of the measurements.
     pub(super) fn new(
-        law: &Tape,
         rates: &Tape,
         sizes: Sizes,
         outside: Outside,
-        seen: &[Onto],
+        seen: usize,
     ) -> Result<Self, VectorError> {
-        let views = seen.iter().zip(outside.inputs..);
-        let views: Vec<Seen> = views.map(|(onto, by)| onto.seen(by)).collect();
         let sizes = Sizes {
-            inputs: outside.inputs + seen.len(),
+            inputs: outside.inputs + seen,
             ..sizes
         };
         let target = Target {
             elementary: Elementary::Own,
             ..Target::default()
         };
-        let rates = closed_loop(law, rates, &views);
         Ok(Self {
-            rates: VectorFunction::compile_or_interpret(&rates, sizes, target)?,
+            rates: VectorFunction::compile_or_interpret(rates, sizes, target)?,
             inputs: sizes.inputs,
-            is_driven: outside.is_there || !seen.is_empty(),
+            is_driven: outside.is_there || seen > 0,
         })
     }
 
@@ -87,7 +84,7 @@ impl ClosedLoop {
 
 impl Onto {
     /// The disturbance as an input of the closed loop.
-    fn seen(self, by: usize) -> Seen {
+    pub(super) fn seen(self, by: usize) -> Seen {
         let by = index(by);
         match self {
             Self::Measured(state) => Seen::Disturbed {

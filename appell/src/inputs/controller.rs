@@ -7,7 +7,9 @@ use std::sync::Arc;
 use appell_analysis::control::sampler::Sampler;
 use appell_codegen::jit::Sizes;
 use appell_codegen::symbolic::Expr as Lowered;
-use appell_codegen::tape::{Argument, Arithmetic, ResultArray, Tape, Value};
+use appell_codegen::tape::{
+    Argument, Arithmetic, ResultArray, Seen, Tape, Value, closed_loop,
+};
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_runtime::model::{Along, Model, ModelInfo, Switching};
 use appell_runtime::real::{Enclosure, Real};
@@ -276,13 +278,42 @@ impl Wiring {
         info: &ModelInfo,
         seen: &[Onto],
     ) -> Result<ClosedLoop, Error> {
-        let given = self.recorded.is_some() || !self.driven.is_empty();
         let outside = Outside {
             inputs: self.function.inputs(),
-            is_there: given || self.has_laws_outside() || self.function.has_signals(),
+            is_there: self.outside().is_some(),
         };
-        ClosedLoop::new(&self.tape(info), rates, Sizes::from(info), outside, seen)
-            .map_err(Error::computation)
+        let rates = self.composed(&[rates], info, seen);
+        ClosedLoop::new(&rates, Sizes::from(info), outside, seen.len()).map_err(Error::computation)
+    }
+
+    /// Functions of the model with expressions and laws substituted, their results in a row.
+    pub(crate) fn composed(&self, functions: &[&Tape], info: &ModelInfo, seen: &[Onto]) -> Tape {
+        let views = seen.iter().zip(self.function.inputs()..);
+        let views: Vec<Seen> = views.map(|(onto, by)| onto.seen(by)).collect();
+        closed_loop(&self.tape(info), functions, &views)
+    }
+
+    /// How many inputs the composed functions have without the disturbances.
+    pub(crate) fn inputs(&self) -> usize {
+        self.function.inputs()
+    }
+
+    /// What the closed loop receives from outside, if there is anything.
+    pub(crate) fn outside(&self) -> Option<&'static str> {
+        if self.recorded.is_some() || !self.driven.is_empty() {
+            return Some("recorded inputs");
+        }
+        if self.has_laws_outside() {
+            return Some("a law in discrete time or by inverse dynamics");
+        }
+        self.function
+            .has_signals()
+            .then_some("a table over time in the spec")
+    }
+
+    /// The switching functions of time and state of the expressions.
+    pub(crate) fn crossings(&self) -> Option<Tape> {
+        self.switches.as_ref().map(InputSwitches::crossing_tape)
     }
 
     fn has_laws_outside(&self) -> bool {

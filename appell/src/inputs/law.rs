@@ -80,6 +80,6 @@ pub(super) fn number(tape: &mut Tape, value: f64) -> Value {
     tape.constant(Rational::from_f64(value).unwrap_or(Rational::ZERO))
 }
 
-pub(super) fn index(place: usize) -> u32 {
+pub(crate) fn index(place: usize) -> u32 {
     u32::try_from(place).unwrap_or(u32::MAX)
 }

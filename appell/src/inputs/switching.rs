@@ -2,7 +2,7 @@
 
 use appell_codegen::mechanics::switches::{Switches, switches};
 use appell_codegen::symbolic::Expr;
-use appell_codegen::tape::enclose;
+use appell_codegen::tape::{Tape, enclose};
 use appell_runtime::model::{Along, At, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
 use appell_runtime::signal::SignalError;
@@ -50,6 +50,15 @@ impl InputSwitches {
             of_time: bench.clone().function(info, [functions, shapes].concat())?,
             crossings: bench.function(info, [crossings, pulses].concat())?,
         }))
+    }
+
+    /// The functions of the state whose zeros switch.
+    pub(super) fn crossing_tape(&self) -> Tape {
+        let mut tape = self.crossings.tape().clone();
+        for result in &mut tape.results {
+            result.entries.truncate(self.counts.crossings);
+        }
+        tape
     }
 }
 

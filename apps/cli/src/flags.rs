@@ -41,6 +41,7 @@ pub(crate) fn flag(field: Field) -> Option<&'static str> {
         Field::Sources => "--sources-only",
         Field::Chunk => "--chunk",
         Field::Jobs => "--jobs",
+        Field::Device => "--device",
         _ => return None,
     })
 }

@@ -40,16 +40,20 @@ fn names(chunks: Vec<Chunk>) -> impl Iterator<Item = String> {
 impl Study {
     /// A study file, or its text with the folder that has the files it names. Without `out` rows stay in memory.
     #[new]
-    #[pyo3(signature = (study, folder, out))]
+    #[pyo3(signature = (study, folder, out, on_card))]
     fn new(
         py: Python<'_>,
         study: String,
         folder: Option<PathBuf>,
         out: Option<PathBuf>,
+        on_card: bool,
     ) -> PyResult<Self> {
-        let ensemble = watched(py, None, move |_| match folder {
-            Some(folder) => Ensemble::parse("study.toml", &study, &folder),
-            None => Ensemble::from_file(Path::new(&study)),
+        let ensemble = watched(py, None, move |_| {
+            let ensemble = match folder {
+                Some(folder) => Ensemble::parse("study.toml", &study, &folder),
+                None => Ensemble::from_file(Path::new(&study)),
+            }?;
+            if on_card { ensemble.on_card() } else { Ok(ensemble) }
         })?;
         let store: Arc<dyn Store> = match out {
             Some(out) => Arc::new(Folder::new(&out).map_err(Error::computation).raise(py)?),
@@ -59,6 +63,11 @@ impl Study {
             ensemble: Arc::new(ensemble.raise(py)?),
             store,
         })
+    }
+
+    /// The CUDA sources of its motions.
+    fn cuda(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        self.ensemble.cuda().raise(py)
     }
 
     /// Number of cases.

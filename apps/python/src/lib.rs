@@ -7,6 +7,7 @@
 )]
 
 mod arrays;
+mod card;
 mod ensemble;
 mod errors;
 mod model;
@@ -30,6 +31,8 @@ mod _appell {
         Ok(())
     }
 
+    #[pymodule_export]
+    use super::card::{CardMemory, OnCard};
     #[pymodule_export]
     use super::ensemble::Study;
     #[pymodule_export]

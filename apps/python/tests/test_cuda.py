@@ -71,17 +71,21 @@ def test_many_motions_take_the_steps_of_runge_and_kutta(model, tmp_path):
 @pytest.mark.parametrize("single", [False, True])
 @pytest.mark.parametrize("name", NAMES)
 def test_kernels_compile_for_graphics_cards(model, name, single):
+    text = ptx(model(name).cuda(single=single, integrator=True))
+    for kernel in ("rates_places", "jacobians_places", "motions"):
+        assert f".visible .entry {name}_{kernel}(" in text
+
+
+def ptx(source):
+    """What NVRTC makes of a source, without a word."""
     nvrtc = compiler()
-    text = model(name).cuda(single=single, integrator=True).encode()
     program = ctypes.c_void_p()
-    assert nvrtc.nvrtcCreateProgram(ctypes.byref(program), text, b"model.cu", 0, None, None) == 0
+    assert nvrtc.nvrtcCreateProgram(ctypes.byref(program), source.encode(), b"model.cu", 0, None, None) == 0
     options = [b"--gpu-architecture=compute_80", b"--fmad=false"]
     failed = nvrtc.nvrtcCompileProgram(program, len(options), (ctypes.c_char_p * len(options))(*options))
-    assert not failed, told(nvrtc.nvrtcGetProgramLogSize, nvrtc.nvrtcGetProgramLog, program)
-    assert not told(nvrtc.nvrtcGetProgramLogSize, nvrtc.nvrtcGetProgramLog, program).strip()
-    ptx = told(nvrtc.nvrtcGetPTXSize, nvrtc.nvrtcGetPTX, program)
-    for kernel in ("rates_places", "jacobians_places", "motions"):
-        assert f".visible .entry {name}_{kernel}(" in ptx
+    said = told(nvrtc.nvrtcGetProgramLogSize, nvrtc.nvrtcGetProgramLog, program).strip()
+    assert not failed and not said, said
+    return told(nvrtc.nvrtcGetPTXSize, nvrtc.nvrtcGetPTX, program)
 
 
 def compiler():

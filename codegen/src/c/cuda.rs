@@ -10,12 +10,12 @@ use appell_spec::foreign::sentence;
 
 use super::types::Types;
 use super::{Options, definition, heading, helpers, is_empty};
-use crate::program::{Array, Function, Layout, Own, Program, Space};
+use crate::program::{Array, Function, FunctionKind, Layout, Own, Program, Space};
 use crate::schedule::schedule;
 use crate::text::shape;
 
 /// The frame of the source; `NAME` is the prefix of all names.
-const FRAME: &str = "\
+pub(super) const FRAME: &str = "\
 #ifndef __CUDACC_RTC__
 #include <math.h>
 #include <string.h>
@@ -79,6 +79,42 @@ pub fn cuda(program: &Program, options: &Options) -> String {
         text += &motions(&types);
     }
     text.trim_end().to_owned() + "\n"
+}
+
+/// A kernel of the source: its arguments are n, t, p, each, x, u, the additional one if there is one, and the results.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Kernel {
+    /// The function.
+    pub function: FunctionKind,
+    /// The name in the source.
+    pub name: String,
+    /// How many quantities the additional argument has, if there is one.
+    pub own: Option<usize>,
+    /// Names and shapes of the results that have entries.
+    pub results: Vec<(String, Vec<usize>)>,
+}
+
+/// The kernels of the functions of a program.
+pub fn kernels(program: &Program, options: &Options) -> Vec<Kernel> {
+    let types = Types::new(program, options.real);
+    let kernels = super::emitted(program, options).map(|function| {
+        let results = function.results.iter();
+        let results = results.filter(|array| !is_empty(program, array));
+        let own = function.kind.takes().map(|own| match own {
+            Own::Accelerations => types.fields(Space::Accelerations).len(),
+            Own::Weights => types.fields(Space::State).len(),
+            Own::OutputWeights => types.fields(Space::Outputs).len(),
+        });
+        Kernel {
+            function: function.kind,
+            name: format!("{}_{}_places", types.prefix, function.kind.name()),
+            own,
+            results: results
+                .map(|array| (array.name.to_string(), shape(program, array.layout)))
+                .collect(),
+        }
+    });
+    kernels.collect()
 }
 
 /// The arrays of the kernels.

@@ -106,7 +106,7 @@ fn coefficients(text: &mut String) {
     let method = Dop853::coefficients();
     let rows = (method.stages.iter())
         .chain([&method.weights])
-        .chain(&method.errors);
+        .chain(method.errors);
     let rows: Vec<_> = rows.collect();
     let stages = method.nodes.len() + 1;
     let _ = write!(

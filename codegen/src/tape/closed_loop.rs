@@ -1,4 +1,4 @@
-//! Equations of motion with a control law, as one tape.
+//! Functions of a motion under a control law, as one tape.
 
 use super::{Argument, Arithmetic, Operation, ResultArray, Tape, Unique, Value};
 use crate::symbolic::Function;
@@ -22,29 +22,39 @@ pub enum Seen {
     },
 }
 
-/// The rates of a closed loop: the first result of `law` gives the inputs of `rates`. Both have the same time,
-/// states and parameters; the inputs of the closed loop are those of the law and those of `seen`.
-pub fn closed_loop(law: &Tape, rates: &Tape, seen: &[Seen]) -> Tape {
+/// Functions of a closed loop: the first result of `law` gives the inputs of each of `functions`, whose first results
+/// become one, called `values`. All have the same time, states and parameters; the inputs of the closed loop are those of
+/// the law and those of `seen`.
+pub fn closed_loop(law: &Tape, functions: &[&Tape], seen: &[Seen]) -> Tape {
     let mut composed = Unique::default();
-    // A sine or a cosine in the law has the call of the rates.
-    for operation in &rates.operations {
-        if let Operation::SinCos(angle) = operation
-            && let Operation::Argument(state @ Argument::State(_)) = rates.operation(*angle)
-        {
-            let state = composed.push(Operation::Argument(*state));
-            composed.push(Operation::SinCos(state));
+    // A sine or a cosine in the law has the call of the functions.
+    for function in functions {
+        for operation in &function.operations {
+            if let Operation::SinCos(angle) = operation
+                && let Operation::Argument(state @ Argument::State(_)) = function.operation(*angle)
+            {
+                let state = composed.push(Operation::Argument(*state));
+                composed.push(Operation::SinCos(state));
+            }
         }
     }
     let inputs = add(&mut composed, law, |composed, argument| {
         replaced(composed, argument, seen)
     });
-    let rates = add(&mut composed, rates, |composed, argument| match argument {
-        Argument::Input(input) => inputs[input as usize],
-        other => composed.push(Operation::Argument(other)),
-    });
+    let of_laws = |seen: &&Seen| matches!(seen, Seen::Replaced { .. });
+    let parameters: Vec<Seen> = seen.iter().filter(of_laws).copied().collect();
+    let mut values = Vec::new();
+    for function in functions {
+        values.extend(add(&mut composed, function, |composed, argument| {
+            match argument {
+                Argument::Input(input) => inputs[input as usize],
+                other => replaced(composed, other, &parameters),
+            }
+        }));
+    }
     let results = vec![ResultArray {
-        name: "rates".to_owned(),
-        entries: rates,
+        name: "values".to_owned(),
+        entries: values,
     }];
     composed.finish(results).live()
 }

@@ -97,6 +97,13 @@ impl Pace {
         }
     }
 
+    /// The subintervals of all functions, in the order of time.
+    pub(super) fn all(&self) -> Vec<[f64; 2]> {
+        let mut all = self.by_function.concat();
+        all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        all
+    }
+
     /// The longest step from `t` that is not longer than `h`.
     pub(super) fn longest(&self, t: f64, mut h: f64) -> f64 {
         for parts in &self.by_function {

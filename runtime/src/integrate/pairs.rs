@@ -137,22 +137,50 @@ pub struct Coefficients {
     /// Nodes of the stages after the first.
     pub nodes: &'static [f64],
     /// Their rows.
-    pub stages: &'static [&'static [(usize, f64)]],
+    pub stages: &'static [Row],
     /// Weights of the new state.
-    pub weights: &'static [(usize, f64)],
-    /// The new state minus the embedded ones, of order 5 and 3.
-    pub errors: [&'static [(usize, f64)]; 2],
+    pub weights: Row,
+    /// The new state minus the embedded ones: of order 4, or of order 5 and 3.
+    pub errors: &'static [Row],
+    /// Whether the error needs the rates at the new state.
+    pub error_uses_new_rates: bool,
+    /// Nodes and rows of further stages of the interpolant, after that of the rates at the new state.
+    pub interior_stages: &'static [(f64, Row)],
+    /// Its coefficients over h, after those of the cubic Hermite polynomial.
+    pub interior: &'static [Row],
+    /// The order, which the first step depends on.
+    pub order: f64,
+    /// Step-size control.
+    pub control: Control,
+}
+
+impl Coefficients {
+    const fn of<P: EmbeddedPair>(errors: &'static [Row]) -> Self {
+        Self {
+            nodes: P::TABLEAU.nodes,
+            stages: P::TABLEAU.rows,
+            weights: P::TABLEAU.weights,
+            errors,
+            error_uses_new_rates: P::ERROR_USES_NEW_RATES,
+            interior_stages: P::INTERIOR_STAGES,
+            interior: P::INTERIOR,
+            order: P::ORDER,
+            control: P::CONTROL,
+        }
+    }
+}
+
+impl Dopri5 {
+    /// The coefficients.
+    pub const fn coefficients() -> Coefficients {
+        Coefficients::of::<Self>(&[DOPRI5_ERROR])
+    }
 }
 
 impl Dop853 {
-    /// The coefficients without those of the interpolant.
+    /// The coefficients.
     pub const fn coefficients() -> Coefficients {
-        Coefficients {
-            nodes: dop853::TABLEAU.nodes,
-            stages: dop853::TABLEAU.rows,
-            weights: dop853::TABLEAU.weights,
-            errors: [dop853::ERROR_5, dop853::ERROR_3],
-        }
+        Coefficients::of::<Self>(&[dop853::ERROR_5, dop853::ERROR_3])
     }
 }
 

@@ -3,6 +3,7 @@
 use super::dense_output::{DenseOutput, Ends};
 use super::error::Cause;
 use super::events::brent;
+use crate::model::ModelInfo;
 
 /// The interval of a state outside which the equations do not hold.
 ///
@@ -17,6 +18,19 @@ pub struct Range {
 }
 
 impl Range {
+    /// The states of a model with a finite range.
+    pub fn of(info: &ModelInfo) -> Vec<Self> {
+        let limited = |limits: [f64; 2]| limits.iter().any(|limit| limit.is_finite());
+        let states = info.states.iter().enumerate();
+        states
+            .filter(|(_, state)| limited(state.range))
+            .map(|(component, state)| Self {
+                component,
+                limits: state.range,
+            })
+            .collect()
+    }
+
     /// The limit that a value exceeds.
     pub(super) fn passed(&self, value: f64) -> Option<f64> {
         let [lower, upper] = self.limits;

@@ -9,19 +9,19 @@ use crate::lanes::dispatch;
 /// Constants of the proportional-integral control (Hairer and Wanner, *Solving Ordinary
 /// Differential Equations II*, section IV.2; Hairer, Nørsett and Wanner, section II.4).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Control {
+pub struct Control {
     /// Exponent of the error without the integral part: 1 / (order of the error estimate).
-    pub(super) exponent: f64,
+    pub exponent: f64,
     /// β, the exponent of the previous error.
-    pub(super) integral_gain: f64,
+    pub integral_gain: f64,
     /// Fraction of β subtracted from the exponent.
-    pub(super) integral_correction: f64,
+    pub integral_correction: f64,
     /// Safety factor.
-    pub(super) safety: f64,
+    pub safety: f64,
     /// Bounds on the ratio of successive steps.
-    pub(super) smallest_factor: f64,
+    pub smallest_factor: f64,
     /// See `smallest_factor`.
-    pub(super) largest_factor: f64,
+    pub largest_factor: f64,
 }
 
 /// Factor on a step whose rates were not finite.

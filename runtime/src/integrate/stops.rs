@@ -67,6 +67,35 @@ pub(super) fn sliver(t: f64) -> f64 {
     SLIVER * t.abs().max(1.0)
 }
 
+/// Parts of a motion in which changes are sought one after another, and the most times that are listed.
+const WINDOWS: u32 = 64;
+const MOST_TIMES: usize = 1 << 20;
+
+/// What is known of the steps of a motion before it starts.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Timetable {
+    /// Times in s at which a step has to end since the rates change there.
+    pub changes: Vec<f64>,
+    /// Intervals, by their starts and lengths in s and in the order of the starts: a step that overlaps one of them is
+    /// at most twice as long, so that it steps over no pulse.
+    pub paces: Vec<[f64; 2]>,
+}
+
+impl Timetable {
+    /// That of a motion over a span; nothing if it has more than a million changes.
+    pub(crate) fn new(
+        span: [f64; 2],
+        switching_times: &[f64],
+        switches: Option<&mut Switches<'_>>,
+    ) -> Option<Self> {
+        let mut stops = Stops::new(span, switching_times, switches).with_pace(span[0]);
+        Some(Self {
+            changes: stops.all()?,
+            paces: stops.pace.all(),
+        })
+    }
+}
+
 /// All times at which steps have to end.
 pub(super) struct Stops<'w, 'a> {
     /// The known ones after the start, in increasing order.
@@ -184,6 +213,27 @@ impl<'w, 'a> Stops<'w, 'a> {
                 lands: false,
             },
         }
+    }
+
+    /// All times after the start at which a step has to end that do not depend on the state; nothing if there are too
+    /// many.
+    fn all(&mut self) -> Option<Vec<f64>> {
+        let mut all = self.times.clone();
+        let span = self.end - self.start;
+        for part in 0..WINDOWS {
+            let end = |part: u32| self.start + span * f64::from(part) / f64::from(WINDOWS);
+            let (mut t, to) = (end(part), end(part + 1));
+            while let Some(change) = self.change_within(t, to) {
+                t = change.t;
+                all.push(t);
+                if all.len() > MOST_TIMES {
+                    return None;
+                }
+            }
+        }
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        Some(all)
     }
 
     /// The end of the interval in s.

@@ -9,7 +9,7 @@ use super::dense_output::Ends;
 use crate::lanes::dispatch;
 
 /// Pairs of a stage and its weight; stages that are not listed have weight zero.
-pub(super) type Row = &'static [(usize, f64)];
+pub type Row = &'static [(usize, f64)];
 
 /// A Butcher tableau without the embedded solutions. Stages count from 0.
 pub(super) struct Tableau {

@@ -8,7 +8,7 @@ use crate::condition::velocity_condition;
 use crate::inputs::ModelInputs;
 use crate::integrate::{
     BlockMotion, Ending, Event, Failure, IntegrationError, Observer, Outcome, Projection, Range,
-    SharedTimes, Watch,
+    SharedTimes, Timetable, Watch,
 };
 use crate::model::{At, Model};
 use crate::positions::{Moving, Positions};
@@ -62,7 +62,10 @@ impl<'a> Prepared<'a> {
             start,
             span: [from, if ends_at_once { from } else { to }],
             switching_times: inputs.switching_times(),
-            ranges: ranges(simulation),
+            ranges: match simulation.validity.ranges {
+                Response::Stop => Range::of(model.info()),
+                _ => Vec::new(),
+            },
             limits,
             breaches,
             ends_at_once,
@@ -82,6 +85,13 @@ impl<'a> Prepared<'a> {
     /// Start and end in s.
     pub fn span(&self) -> [f64; 2] {
         self.span
+    }
+
+    /// What is known of its steps before it starts; nothing if the rates change more than a million times. Motions of one
+    /// model with the same functions of time share it.
+    pub fn timetable(&self, shared: &SharedTimes) -> Option<Timetable> {
+        let mut switches = switches(self.model, self.p, self.inputs, shared);
+        Timetable::new(self.span, &self.switching_times, switches.as_mut())
     }
 
     /// Switching times, ranges, projection and events. The events of the limits follow the simulation's own events.
@@ -222,19 +232,6 @@ fn determined_start(
     }
     let state = describe_state(x, model.info());
     Err(SimulationError::Undetermined { condition, state })
-}
-
-/// The states with a finite range, if ranges are checked.
-fn ranges(simulation: &Simulation<'_>) -> Vec<Range> {
-    let limited = |limits: [f64; 2]| limits.iter().any(|limit| limit.is_finite());
-    let states = simulation.model.info().states.iter().enumerate();
-    states
-        .filter(|(_, state)| simulation.validity.ranges == Response::Stop && limited(state.range))
-        .map(|(component, state)| Range {
-            component,
-            limits: state.range,
-        })
-        .collect()
 }
 
 /// The projection onto the position constraints of a model.

@@ -33,6 +33,10 @@ pub(crate) struct EnsembleCommand {
     /// Threads [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
+    /// What computes the motions: the processors, or the first NVIDIA graphics card of this machine, which `cuda` compiles
+    /// them for
+    #[arg(long, value_enum, default_value_t, conflicts_with = "ray")]
+    device: Device,
     /// Run the K-th of N parts, as on a cluster; the last one prints the statistics
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
@@ -48,6 +52,14 @@ pub(crate) struct EnsembleCommand {
     json: Option<PathBuf>,
 }
 
+/// What computes motions.
+#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
+enum Device {
+    #[default]
+    Cpu,
+    Cuda,
+}
+
 impl EnsembleCommand {
     pub(super) fn run(&self) -> Result<(), Error> {
         if files::is_stdout(&self.out) {
@@ -57,7 +69,10 @@ impl EnsembleCommand {
         let spinner = progress::spinner("deriving the equations of motion");
         let ensemble = Ensemble::from_file(&self.study);
         spinner.finish_and_clear();
-        let ensemble = ensemble?;
+        let ensemble = match self.device {
+            Device::Cpu => ensemble?,
+            Device::Cuda => on_card(ensemble?)?,
+        };
         ensemble.chunks(self.chunk)?;
         let store = store_at(&self.out)?;
         let store = store.as_ref();
@@ -186,6 +201,14 @@ impl EnsembleCommand {
         let text = format!("{}\nfigures: {}\n", ensemble::text(&about), page.display());
         output::print_beside(&text, &[&self.json])
     }
+}
+
+/// The motions compiled for the graphics card.
+fn on_card(ensemble: Ensemble) -> Result<Ensemble, Error> {
+    let spinner = progress::spinner("compiling for the graphics card");
+    let ensemble = ensemble.on_card();
+    spinner.finish_and_clear();
+    Ok(ensemble?)
 }
 
 /// Whether a path is the address of an object store.

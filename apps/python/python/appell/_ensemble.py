@@ -18,6 +18,8 @@ from ._report import Report
 
 # Chunks in one call on a cluster, and the minimum number of calls.
 GROUP, FEWEST_CALLS = 16, 64
+# What computes motions: the processors, or the first NVIDIA graphics card.
+DEVICES = ("cpu", "cuda")
 
 
 class Ensemble(Report):
@@ -26,16 +28,28 @@ class Ensemble(Report):
     It can be sent to other processes, which then find the rows where they are kept.
     """
 
-    def __init__(self, study: str | Path, out: str | Path | None = None, *, folder: str | Path | None = None):
+    def __init__(
+        self,
+        study: str | Path,
+        out: str | Path | None = None,
+        *,
+        folder: str | Path | None = None,
+        device: str = "cpu",
+    ):
         study = str(study)
         if "\n" in study and folder is None:
             folder = "."
-        self._made = (study, None if out is None else str(out), None if folder is None else str(folder))
-        self._native = _appell.Study(study, self._made[2], self._made[1])
+        if device not in DEVICES:
+            raise ValueError(f"device is one of {', '.join(DEVICES)}, not {device!r}")
+        self._made = (study, None if out is None else str(out), None if folder is None else str(folder), device)
+        self._native = _appell.Study(study, self._made[2], self._made[1], device == "cuda")
 
     def __reduce__(self):
-        study, out, folder = self._made
-        return _restored, (study, out, folder)
+        return _restored, self._made
+
+    def cuda(self) -> list[str]:
+        """The CUDA sources of the motions, one for each spec and law."""
+        return self._native.cuda()
 
     @property
     def cases(self) -> int:
@@ -77,7 +91,7 @@ class Ensemble(Report):
         Rows do not pass through this process: every worker writes the chunks that it finishes to `out`, a folder that
         all machines see under this path, as they see the study. A chunk whose worker or machine is lost is run again.
         """
-        study, out, folder = self._made
+        study, out, folder, device = self._made
         if out is None:
             raise ValueError("a cluster needs a folder for the rows, `out`, that all machines see")
         missing = self.missing(shard=shard, chunk=chunk)
@@ -85,7 +99,7 @@ class Ensemble(Report):
         group = max(1, min(GROUP, len(missing) // FEWEST_CALLS))
         groups = [missing[first : first + group] for first in range(0, len(missing), group)]
         done = 0
-        made = (study if "\n" in study else _absolute(study), _absolute(out), folder and _absolute(folder))
+        made = (study if "\n" in study else _absolute(study), _absolute(out), folder and _absolute(folder), device)
         for number, _ in spread(_run, [(made, names, chunk) for names in groups], address):
             done += len(groups[number])
             if progress is not None:
@@ -170,7 +184,7 @@ class Ensemble(Report):
 _compiled: dict[tuple[Any, ...], Ensemble] = {}
 
 
-def _run(made: tuple[str, str | None, str | None], names: Sequence[str], chunk: int | None) -> int:
+def _run(made: tuple[str, str | None, str | None, str], names: Sequence[str], chunk: int | None) -> int:
     """Runs chunks in a worker, except those completed by a lost worker; returns how many."""
     if made not in _compiled:
         _compiled.clear()
@@ -187,8 +201,8 @@ def _absolute(path: str) -> str:
     return str(Path(path).absolute())
 
 
-def _restored(study: str, out: str | None, folder: str | None) -> Ensemble:
-    return Ensemble(study, out, folder=folder)
+def _restored(study: str, out: str | None, folder: str | None, device: str) -> Ensemble:
+    return Ensemble(study, out, folder=folder, device=device)
 
 
 def ensemble(
@@ -202,12 +216,14 @@ def ensemble(
     chunk: int | None = None,
     progress: Callable[[str], Any] | None = None,
     ray: str | bool | None = None,
+    device: str = "cpu",
 ) -> Ensemble:
     """Runs a study: the path of a study file, or its text, whose files lie in `folder`.
 
     Rows go to the folder `out` in chunks, or stay in memory. What is there already is not run again; `chunks` names
     those to run, as `Ensemble.missing` lists them. `ray` is the address of a Ray cluster that runs them, or `True` for
-    the one that this machine belongs to or for this machine alone; see `Ensemble.spread`.
+    the one that this machine belongs to or for this machine alone; see `Ensemble.spread`. With `device="cuda"` the first
+    NVIDIA graphics card computes the motions, a thread each; their rows have chunks of their own.
 
     >>> import appell
     >>> swings = appell.ensemble('''
@@ -224,7 +240,7 @@ def ensemble(
     >>> swings["reached"].shape
     (50,)
     """
-    made = Ensemble(study, out, folder=folder)
+    made = Ensemble(study, out, folder=folder, device=device)
     if ray is None or ray is False:
         return made.run(chunks, jobs=jobs, shard=shard, chunk=chunk, progress=progress)
     if chunks is not None or jobs is not None:

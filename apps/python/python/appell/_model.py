@@ -15,6 +15,7 @@ from typing import Any, overload
 import numpy as np
 
 from . import _appell
+from ._card import OnCard
 from ._errors import EndsEarly, Unstable
 from ._motion import Motion, Motions
 from ._notebook import Page, Picture
@@ -522,6 +523,14 @@ class Model(_appell.Model):
             code.get_function("pendulum_rates_places")((n // 256 + 1,), (256,), (n, 0.0, p, 0, x, u, rates))
         """
         return self._cuda(single, integrator)
+
+    def on_card(self, *functions: str) -> OnCard:
+        """Functions at many places on the first NVIDIA graphics card of this machine, `rates` unless others are named.
+
+            x = torch.zeros((len(m.states), 10**6), dtype=torch.float64, device="cuda").T
+            rates = torch.from_dlpack(m.on_card().rates(x))
+        """
+        return OnCard(self, functions or ("rates",))
 
     @cached_property
     def regressor_module(self) -> str:

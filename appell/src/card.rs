@@ -37,7 +37,9 @@ pub struct Places {
     pub own: Option<u64>,
 }
 
-fn refused(error: CardError) -> Error {
+/// The error of a card that cannot be used.
+#[expect(clippy::needless_pass_by_value, reason = "the form of `map_err`")]
+pub(crate) fn refused(error: CardError) -> Error {
     Error::request(Field::Device, error.to_string())
 }
 
@@ -70,9 +72,15 @@ impl OnCard {
 
     /// The results of a function at places, in its order.
     pub fn call(&self, function: FunctionKind, places: &Places) -> Result<Vec<Memory>, Error> {
-        let found = self.functions.iter().find(|(own, _)| own.function == function);
+        let found = self
+            .functions
+            .iter()
+            .find(|(own, _)| own.function == function);
         let Some((about, kernel)) = found else {
-            let message = format!("the model has no function `{}` on the card", function.name());
+            let message = format!(
+                "the model has no function `{}` on the card",
+                function.name()
+            );
             return Err(Error::request(Field::Model, message));
         };
         let results = about.results.iter().map(|(_, shape)| {

@@ -22,6 +22,7 @@
 
 #[cfg(feature = "cuda")]
 mod card;
+mod cases;
 mod engine;
 mod factors;
 mod kernel;
@@ -41,8 +42,8 @@ use appell_ensemble::TAKEN;
 use appell_ensemble::design::Design;
 use appell_ensemble::digest::Digest;
 use appell_ensemble::limits::{MAX_CHUNKS, MAX_JOBS, MAX_NUMBERS, MAX_VARIANTS};
-use appell_ensemble::run::{self, Engine as _};
-use appell_ensemble::study::{FEEDBACK, Keep, MODEL, Text, Varied};
+use appell_ensemble::run::{self, Engine};
+use appell_ensemble::study::{FEEDBACK, MODEL, Text, Varied};
 use appell_ensemble::summary::{See, Wanted};
 use appell_spec::{Code, shown};
 
@@ -58,37 +59,21 @@ pub use appell_report::ensemble::{About, figures, page, text};
 
 use crate::source::Source;
 use crate::{Error, Field, files};
+use cases::{Cases, Task};
 use factors::Table;
-use layout::Layout;
 use reading::Reading;
-use variant::{Common, Variant};
+use variant::Common;
 
 /// A compiled study.
 pub struct Ensemble {
-    study: Study,
-    design: Design,
-    /// Values of the factors that choose between numbers.
-    choices: Vec<Vec<f64>>,
-    task: Task,
+    cases: Cases,
     /// Evaluation of the rare event in each motion.
     rare: Option<Task>,
-    /// One for each spec and law, laws varying fastest.
-    variants: Vec<Variant>,
-    /// Number of laws between which a factor chooses, or 1.
-    laws: usize,
     /// Hash of everything that the rows depend on.
     hash: String,
     /// The motions on a graphics card, if it computes them.
     #[cfg(feature = "cuda")]
     card: Option<card::OnCard>,
-}
-
-/// The kept quantities of a motion, and their columns.
-struct Task {
-    keep: Vec<Keep>,
-    /// Indices among the kept quantities of the study.
-    which: Vec<usize>,
-    layout: Layout,
 }
 
 /// Options for running the missing chunks of a study.
@@ -258,13 +243,15 @@ impl Ensemble {
         let laws = laws.len().max(1);
         Ok(Self {
             hash: digest.text(),
-            laws,
-            variants,
-            task,
+            cases: Cases {
+                study,
+                design,
+                choices,
+                task,
+                variants,
+                laws,
+            },
             rare,
-            choices,
-            design,
-            study,
             #[cfg(feature = "cuda")]
             card: None,
         })
@@ -274,7 +261,7 @@ impl Ensemble {
     /// processors within the tolerances of the study, and have chunks of their own.
     #[cfg(feature = "cuda")]
     pub fn on_card(mut self) -> Result<Self, Error> {
-        self.card = Some(card::OnCard::new(&self)?);
+        self.card = Some(card::OnCard::new(&self.cases)?);
         self.hash.push_str("-card");
         Ok(self)
     }
@@ -282,36 +269,39 @@ impl Ensemble {
     /// An error: this library is built without graphics cards.
     #[cfg(not(feature = "cuda"))]
     pub fn on_card(self) -> Result<Self, Error> {
-        let message = "this program was built without graphics cards; build it with the feature `cuda`";
+        let message =
+            "this program was built without graphics cards; build it with the feature `cuda`";
         Err(Error::request(Field::Device, message))
     }
 
     /// The sources in CUDA C++ of its motions, one for each spec and law, laws varying fastest.
     pub fn cuda(&self) -> Result<Vec<String>, Error> {
-        let variants = self.variants.iter();
-        variants.map(|variant| kernel::source(self, variant)).collect()
+        let variants = self.cases.variants.iter();
+        variants
+            .map(|variant| kernel::source(&self.cases, variant))
+            .collect()
     }
 
     /// The study.
     pub fn study(&self) -> &Study {
-        &self.study
+        &self.cases.study
     }
 
     /// The values of the factors in all cases.
     pub fn design(&self) -> &Design {
-        &self.design
+        &self.cases.design
     }
 
     /// The columns of a row.
     pub fn columns(&self) -> &[Column] {
-        &self.task.layout.columns
+        &self.cases.task.layout.columns
     }
 
     /// All chunks of cases, of the requested size.
     pub fn chunks(&self, size: Option<u64>) -> Result<Chunks, Error> {
-        let [least, most] = chunk_sizes(self.design.cases(), self.columns().len());
+        let [least, most] = chunk_sizes(self.cases.design.cases(), self.columns().len());
         match size {
-            Some(size) if size < least || size.min(self.design.cases()) > most => {
+            Some(size) if size < least || size.min(self.cases.design.cases()) > most => {
                 let message = format!("a chunk has {least} to {most} cases in this study");
                 Err(Error::request(Field::Chunk, message))
             }
@@ -321,7 +311,7 @@ impl Ensemble {
 
     /// All chunks of cases, of the size set by the study or by their number.
     fn sized(&self, size: Option<u64>) -> Chunks {
-        let cases = self.design.cases();
+        let cases = self.cases.design.cases();
         let [least, most] = chunk_sizes(cases, self.columns().len());
         let usual = cases
             .div_ceil(CHUNKS)
@@ -332,7 +322,7 @@ impl Ensemble {
             Some(_) => usual.max(card::TOGETHER.min(cases)),
             None => usual,
         };
-        let own = self.study.chunk.as_ref().map(|chunk| chunk.value);
+        let own = self.cases.study.chunk.as_ref().map(|chunk| chunk.value);
         Chunks {
             study: self.hash.clone(),
             cases,
@@ -403,7 +393,13 @@ impl Ensemble {
         let chunks = self.chunks(running.chunk)?;
         let jobs = running.threads()?;
         #[cfg(feature = "cuda")]
-        let go_on = || (watch.go_on)() && self.card.as_ref().is_none_or(|card| card.failure().is_none());
+        let go_on = || {
+            (watch.go_on)()
+                && self
+                    .card
+                    .as_ref()
+                    .is_none_or(|card| card.failure().is_none())
+        };
         #[cfg(feature = "cuda")]
         let watch = Watch {
             go_on: &go_on,
@@ -425,8 +421,13 @@ impl Ensemble {
         let scan = |wanted: Wanted<'_>, see: See<'_>| {
             run::scan(store, &chunks, &there, columns, wanted, see)
         };
-        let summary = Summary::new(columns, &self.design, self.study.seed, scan);
-        let event = self.study.rare.as_ref().map(|rare| rare.event.text.clone());
+        let summary = Summary::new(columns, &self.cases.design, self.cases.study.seed, scan);
+        let event = self
+            .cases
+            .study
+            .rare
+            .as_ref()
+            .map(|rare| rare.event.text.clone());
         Ok(Summary {
             rare: event.zip(self.probability(store)?),
             ..summary.map_err(Error::computation)?
@@ -435,10 +436,10 @@ impl Ensemble {
 
     /// Title of figures and pages.
     pub fn title(&self) -> &str {
-        if self.study.title.is_empty() {
-            &self.variants[0].model.info().title
+        if self.cases.study.title.is_empty() {
+            &self.cases.variants[0].model.info().title
         } else {
-            &self.study.title
+            &self.cases.study.title
         }
     }
 
@@ -446,7 +447,7 @@ impl Ensemble {
     pub fn about<'a>(&'a self, summary: &'a Summary) -> About<'a> {
         About {
             title: self.title(),
-            study: &self.study.text,
+            study: &self.cases.study.text,
             columns: self.columns(),
             summary,
         }
@@ -458,6 +459,20 @@ impl Ensemble {
         let there = chunks.there(store).map_err(Error::computation)?;
         run::scan(store, &chunks, &there, self.columns(), &|_| true, &mut see)
             .map_err(Error::computation)
+    }
+}
+
+impl Engine for Ensemble {
+    fn columns(&self) -> &[Column] {
+        self.columns()
+    }
+
+    fn run(&self, cases: Range<u64>, watch: &Watch<'_>, rows: &mut Rows) {
+        #[cfg(feature = "cuda")]
+        if let Some(card) = &self.card {
+            return card.run(&self.cases, cases, watch, rows);
+        }
+        self.cases.run(cases, watch, rows);
     }
 }
 

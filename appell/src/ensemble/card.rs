@@ -10,12 +10,12 @@ use appell_runtime::inputs::ModelInputs;
 use appell_runtime::integrate::{Cause, SharedTimes, Timetable};
 use appell_runtime::simulate::Prepared;
 
-use super::engine::{Ride, cause_of, told};
+use super::cases::{Cases, Ride, Row, cause_of, told};
 use super::kernel::{self, Kinds};
 use super::noise::Draws;
 use super::variant::Variant;
-use super::Ensemble;
-use crate::{Error, Field};
+use crate::Error;
+use crate::card::refused;
 
 /// Cases of a call: enough for all threads of a large card.
 pub(super) const TOGETHER: u64 = 1 << 18;
@@ -61,16 +61,17 @@ fn place(index: usize) -> i32 {
 
 impl OnCard {
     /// Compiles the motions of a study for the first card of this machine.
-    pub(super) fn new(ensemble: &Ensemble) -> Result<Self, Error> {
-        let refused = |error: CardError| Error::request(Field::Device, error.to_string());
-        let sources = ensemble.cuda()?;
+    pub(super) fn new(study: &Cases) -> Result<Self, Error> {
+        let variants = study.variants.iter();
+        let sources = variants.map(|variant| kernel::source(study, variant));
+        let sources = sources.collect::<Result<Vec<_>, _>>()?;
         let card = Card::first().map_err(refused)?;
         let mut kernels = Vec::new();
         for source in &sources {
             kernels.extend(card.compile(source, &[kernel::NAME]).map_err(refused)?);
         }
-        let task = &ensemble.task;
-        let factors = ensemble.design.factors().len();
+        let task = &study.task;
+        let factors = study.factors();
         let recorded = Kinds::of(task).recorded;
         let places = task.layout.moments.iter().flat_map(|moment| {
             let which = recorded.iter().position(|&keep| keep == moment.keep);
@@ -91,30 +92,26 @@ impl OnCard {
     }
 
     /// Appends the rows of consecutive cases, in their order; none after a failure.
-    pub(super) fn run(
-        &self,
-        ensemble: &Ensemble,
-        cases: Range<u64>,
-        watch: &Watch<'_>,
-        rows: &mut Rows,
-    ) {
-        let together = TOGETHER.min((NUMBERS / numbers_of_a_motion(ensemble)).max(1) as u64);
+    pub(super) fn run(&self, study: &Cases, cases: Range<u64>, watch: &Watch<'_>, rows: &mut Rows) {
+        let together = TOGETHER.min((NUMBERS / numbers_of_a_motion(study)).max(1) as u64);
         let mut next = cases.start;
         while next < cases.end && (watch.go_on)() && self.failure().is_none() {
             let some = next..cases.end.min(next + together);
             let draws: Vec<Draws<'_>> = some.clone().map(Draws::Case).collect();
-            let mut all = ensemble.empty_rows(&ensemble.task, draws.len());
-            let rides = ensemble.drawn(&draws, &mut all);
+            let mut all = Row::empty(&study.task, draws.len());
+            let rides = study.drawn(&draws, &mut all);
             for ((kernel, variant), mut rides) in
-                self.kernels.iter().zip(&ensemble.variants).zip(rides)
+                self.kernels.iter().zip(&study.variants).zip(rides)
             {
-                if let Err(error) = self.ride(ensemble, kernel, variant, &mut rides) {
+                if let Err(error) = self.ride(study, kernel, variant, &mut rides) {
                     let mut failure = self.failure.lock();
-                    **failure.as_mut().unwrap_or_else(|poisoned| poisoned.get_mut()) = Some(error);
+                    **failure
+                        .as_mut()
+                        .unwrap_or_else(|poisoned| poisoned.get_mut()) = Some(error);
                     return;
                 }
             }
-            ensemble.push(all, rows);
+            study.push(all, rows);
             (watch.done)(some.end - some.start);
             next = some.end;
         }
@@ -123,7 +120,7 @@ impl OnCard {
     /// Runs motions under one spec and law; in parts if they do not fit into the memory of the card.
     fn ride(
         &self,
-        ensemble: &Ensemble,
+        study: &Cases,
         kernel: &Kernel,
         variant: &Variant,
         rides: &mut [Ride<'_>],
@@ -131,40 +128,36 @@ impl OnCard {
         let (mut motions, mut started) = (Motions::default(), Vec::new());
         let shared = SharedTimes::default();
         for (index, ride) in rides.iter_mut().enumerate() {
-            match motions.add(ensemble, variant, ride, &shared) {
+            match motions.add(study, variant, ride, &shared) {
                 Ok(()) => started.push(index),
                 Err(reason) => ride.row.fail(reason),
             }
         }
-        let ended = match self.call(ensemble, kernel, &motions) {
+        let ended = match self.call(study, kernel, &motions) {
             Err(CardError::Memory) if rides.len() > FEW => {
                 drop(motions);
                 let (first, second) = rides.split_at_mut(rides.len() / 2);
-                self.ride(ensemble, kernel, variant, first)?;
-                return self.ride(ensemble, kernel, variant, second);
+                self.ride(study, kernel, variant, first)?;
+                return self.ride(study, kernel, variant, second);
             }
             ended => ended?,
         };
-        let factors = ensemble.design.factors().len();
+        let factors = study.factors();
         for (motion, &index) in started.iter().enumerate() {
             let row = &mut *rides[index].row;
             for (column, value) in row.values[factors..].iter_mut().enumerate() {
                 *value = ended.rows[column * started.len() + motion];
             }
-            let reason = cause(ended.endings[motion]).map(|cause| cause_of(&cause, variant.model.info()));
+            let reason =
+                cause(ended.endings[motion]).map(|cause| cause_of(&cause, variant.model.info()));
             row.end_at(ended.ends[motion], reason.unwrap_or_default());
         }
         Ok(())
     }
 
-    fn call(
-        &self,
-        ensemble: &Ensemble,
-        kernel: &Kernel,
-        motions: &Motions,
-    ) -> Result<Ended, CardError> {
+    fn call(&self, study: &Cases, kernel: &Kernel, motions: &Motions) -> Result<Ended, CardError> {
         let count = motions.starts.len();
-        let columns = ensemble.columns().len() - ensemble.design.factors().len();
+        let columns = study.task.layout.columns.len() - study.factors();
         let mut ended = Ended {
             rows: vec![f64::NAN; columns * count],
             ends: vec![0.0; count],
@@ -197,16 +190,16 @@ impl Motions {
     /// Adds a motion, or returns why it cannot start.
     fn add(
         &mut self,
-        ensemble: &Ensemble,
+        study: &Cases,
         variant: &Variant,
         ride: &Ride<'_>,
         shared: &SharedTimes,
     ) -> Result<(), String> {
         let model = variant.model.equations();
-        let source = ensemble.source(variant, ride);
+        let source = study.source(variant, ride);
         let inputs = ModelInputs::new(model.info(), &source);
         let inputs = inputs.map_err(|error| told(&error.into(), variant))?;
-        let simulation = ensemble.simulation(variant, &ride.start, &source, false);
+        let simulation = study.simulation(variant, &ride.start, &source, false);
         let prepared = Prepared::new(&simulation, &inputs);
         let prepared = prepared.map_err(|error| told(&error, variant))?;
         let table = prepared.timetable(shared);
@@ -236,12 +229,12 @@ impl Motions {
 }
 
 /// Numbers that a motion takes in a call.
-fn numbers_of_a_motion(ensemble: &Ensemble) -> usize {
-    let own = ensemble.variants.iter().map(|variant| {
-        let noise = (variant.noises.iter()).map(|noise| noise.count(ensemble.study.motion.t_end));
+fn numbers_of_a_motion(study: &Cases) -> usize {
+    let own = study.variants.iter().map(|variant| {
+        let noise = (variant.noises.iter()).map(|noise| noise.count(study.study.motion.t_end));
         variant.parameters.len() + variant.initial.len() + noise.sum::<usize>()
     });
-    ensemble.columns().len() + own.max().unwrap_or(0) + 1
+    study.task.layout.columns.len() + own.max().unwrap_or(0) + 1
 }
 
 /// Vectors as one array with the entries of each quantity one after another.

@@ -6,9 +6,9 @@ use appell_codegen::tape::{Argument, ResultArray, Tape};
 use appell_ensemble::study::{Kept, Method};
 use appell_runtime::integrate::{Dop853, Dopri5, Range};
 
+use super::cases::{self, Cases, Task};
 use super::spec::Quantity;
 use super::variant::Variant;
-use super::{Ensemble, Task, engine};
 use crate::inputs::closed_loop::Onto;
 use crate::inputs::law::index;
 use crate::{Error, Field, Model};
@@ -42,8 +42,8 @@ impl Kinds {
 }
 
 /// The source of the motions of a spec under a law.
-pub(super) fn source(ensemble: &Ensemble, variant: &Variant) -> Result<String, Error> {
-    let (model, task, motion) = (&*variant.model, &ensemble.task, &ensemble.study.motion);
+pub(super) fn source(study: &Cases, variant: &Variant) -> Result<String, Error> {
+    let (model, task, motion) = (&*variant.model, &study.task, &study.study.motion);
     if let Some(reason) = variant.wiring.outside() {
         let message = format!("a graphics card computes no motion with {reason}");
         return Err(Error::request(Field::Device, message));
@@ -59,7 +59,7 @@ pub(super) fn source(ensemble: &Ensemble, variant: &Variant) -> Result<String, E
         let quantities = which.iter().map(|&index| variant.kept[task.which[index]]);
         Ok(composed(&[&listed(model, quantities)?]))
     };
-    let factors = ensemble.design.factors().len();
+    let factors = study.factors();
     let column = |index: usize| task.layout.first[index] - factors;
     let kept_as = |index: usize| &task.keep[index].kept;
     let stops = |index: usize| *kept_as(index) == Kept::When { stop: true };
@@ -84,7 +84,11 @@ pub(super) fn source(ensemble: &Ensemble, variant: &Variant) -> Result<String, E
         rates: &composed(&[model.rates()?]),
         crossings: &composed(&crossings),
         events: &kept(&kinds.events)?,
-        event_columns: kinds.events.iter().map(|&index| (column(index), stops(index))).collect(),
+        event_columns: kinds
+            .events
+            .iter()
+            .map(|&index| (column(index), stops(index)))
+            .collect(),
         followed: &kept(&kinds.followed)?,
         followed_columns: followed_columns.collect(),
         constraints: &composed(&[&constraints(model)?]),
@@ -98,7 +102,7 @@ pub(super) fn source(ensemble: &Ensemble, variant: &Variant) -> Result<String, E
             Method::Dop853 => Dop853::coefficients(),
             Method::Dopri5 => Dopri5::coefficients(),
         },
-        options: engine::options(motion),
+        options: cases::options(motion),
         end: motion.t_end,
         interval: task.layout.interval,
         ranges: if motion.ignore_ranges {
@@ -114,7 +118,10 @@ pub(super) fn source(ensemble: &Ensemble, variant: &Variant) -> Result<String, E
 
 /// Quantities as one list.
 fn listed(model: &Model, quantities: impl Iterator<Item = Quantity>) -> Result<Tape, Error> {
-    let mut tape = model.tape(FunctionKind::Outputs)?.cloned().unwrap_or_default();
+    let mut tape = model
+        .tape(FunctionKind::Outputs)?
+        .cloned()
+        .unwrap_or_default();
     let outputs = tape.results.first().map(|result| result.entries.clone());
     let outputs = outputs.unwrap_or_default();
     let entries = quantities.map(|quantity| match quantity {
@@ -134,7 +141,10 @@ fn listed(model: &Model, quantities: impl Iterator<Item = Quantity>) -> Result<T
 fn constraints(model: &Model) -> Result<Tape, Error> {
     let tape = model.tape(FunctionKind::PositionConstraints)?;
     let mut tape = tape.cloned().unwrap_or_default();
-    let entries = tape.results.iter().flat_map(|result| result.entries.clone());
+    let entries = tape
+        .results
+        .iter()
+        .flat_map(|result| result.entries.clone());
     tape.results = vec![ResultArray {
         name: "constraints".to_owned(),
         entries: entries.collect(),

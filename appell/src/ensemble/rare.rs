@@ -71,13 +71,18 @@ struct Peak<'e> {
 
 impl Landscape for Peak<'_> {
     fn dimension(&self) -> usize {
-        let noises = usize::try_from(self.ensemble.noise_times()).unwrap_or(usize::MAX);
-        self.ensemble.design.drawn().count().saturating_add(noises)
+        let noises = usize::try_from(self.ensemble.cases.noise_times()).unwrap_or(usize::MAX);
+        self.ensemble
+            .cases
+            .design
+            .drawn()
+            .count()
+            .saturating_add(noises)
     }
 
     fn heights(&self, scores: &[Vec<f64>]) -> Vec<f64> {
         let draws: Vec<Draws<'_>> = scores.iter().map(|one| Draws::Scores(one)).collect();
-        let rows = self.ensemble.rows_of(self.task, &draws);
+        let rows = self.ensemble.cases.rows_of(self.task, &draws);
         let column = self.task.layout.first[0];
         rows.iter().map(|row| row.values[column]).collect()
     }
@@ -122,7 +127,7 @@ impl Ensemble {
             ensemble: self,
             task,
         };
-        let splitting = Splitting::new(&peak, self.particles(), self.study.seed);
+        let splitting = Splitting::new(&peak, self.particles(), self.cases.study.seed);
         run::run(
             &splitting,
             &chunks,
@@ -135,7 +140,7 @@ impl Ensemble {
     }
 
     fn all_particles(&self) -> u64 {
-        let rare = self.study.rare.as_ref();
+        let rare = self.cases.study.rare.as_ref();
         rare.map_or(0, |rare| rare.particles.value)
     }
 

@@ -7,9 +7,7 @@ use std::sync::Arc;
 use appell_analysis::control::sampler::Sampler;
 use appell_codegen::jit::Sizes;
 use appell_codegen::symbolic::Expr as Lowered;
-use appell_codegen::tape::{
-    Argument, Arithmetic, ResultArray, Seen, Tape, Value, closed_loop,
-};
+use appell_codegen::tape::{Argument, Arithmetic, ResultArray, Seen, Tape, Value, closed_loop};
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_runtime::model::{Along, Model, ModelInfo, Switching};
 use appell_runtime::real::{Enclosure, Real};

@@ -223,3 +223,21 @@ fn a_quantity_that_no_case_has_is_told_as_missing() {
     let row = told.lines().find(|line| line.contains("never"));
     assert!(row.is_some_and(|row| row.ends_with("20")), "{told}");
 }
+
+#[cfg(feature = "cuda")]
+#[test]
+fn without_a_graphics_card_the_device_is_refused() {
+    let folder = Folder::new();
+    folder.write("study.toml", STUDY);
+    // Where the loader finds no driver.
+    let output = Command::new(env!("CARGO_BIN_EXE_appell"))
+        .args(["ensemble", "study.toml", "-o", "rows", "--device", "cuda"])
+        .env("LD_LIBRARY_PATH", "")
+        .current_dir(folder.path("."))
+        .output()
+        .expect("the program runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success());
+    assert!(said.contains("--device") && said.contains("card"), "{said}");
+    assert!(chunks(&folder, "rows").is_empty());
+}

@@ -24,7 +24,9 @@ pub(crate) struct CardMemory(Memory);
 type Told = (String, Option<usize>, Vec<(String, Vec<usize>)>);
 
 fn function(name: &str) -> PyResult<FunctionKind> {
-    let found = FunctionKind::ALL.into_iter().find(|kind| kind.name() == name);
+    let found = FunctionKind::ALL
+        .into_iter()
+        .find(|kind| kind.name() == name);
     found.ok_or_else(|| PyValueError::new_err(format!("there is no function `{name}`")))
 }
 
@@ -94,7 +96,9 @@ impl CardMemory {
 
     /// A copy.
     fn read<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let read = py.detach(|| self.0.read()).map_err(appell::Error::computation);
+        let read = py
+            .detach(|| self.0.read())
+            .map_err(appell::Error::computation);
         Ok(PyArray1::from_vec(py, read.raise(py)?))
     }
 }

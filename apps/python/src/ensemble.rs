@@ -53,7 +53,11 @@ impl Study {
                 Some(folder) => Ensemble::parse("study.toml", &study, &folder),
                 None => Ensemble::from_file(Path::new(&study)),
             }?;
-            if on_card { ensemble.on_card() } else { Ok(ensemble) }
+            if on_card {
+                ensemble.on_card()
+            } else {
+                Ok(ensemble)
+            }
         })?;
         let store: Arc<dyn Store> = match out {
             Some(out) => Arc::new(Folder::new(&out).map_err(Error::computation).raise(py)?),

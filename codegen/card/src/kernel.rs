@@ -155,7 +155,10 @@ impl Kernel {
     }
 
     /// A copy in the memory of the card, which has no empty arrays.
-    fn copied<T: DeviceRepr + Default + Clone>(&self, all: &[T]) -> Result<CudaSlice<T>, CardError> {
+    fn copied<T: DeviceRepr + Default + Clone>(
+        &self,
+        all: &[T],
+    ) -> Result<CudaSlice<T>, CardError> {
         let one = [T::default()];
         let all = if all.is_empty() { &one } else { all };
         Ok(self.stream.clone_htod(all)?)

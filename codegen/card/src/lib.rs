@@ -50,7 +50,9 @@ impl From<DriverError> for CardError {
         if error.0 == CUresult::CUDA_ERROR_OUT_OF_MEMORY {
             return Self::Memory;
         }
-        let name = error.error_string().map(|text| text.to_string_lossy().into_owned());
+        let name = error
+            .error_string()
+            .map(|text| text.to_string_lossy().into_owned());
         Self::Driver(name.unwrap_or_else(|_| format!("{error:?}")))
     }
 }

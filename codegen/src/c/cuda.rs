@@ -110,7 +110,7 @@ pub fn kernels(program: &Program, options: &Options) -> Vec<Kernel> {
             name: format!("{}_{}_places", types.prefix, function.kind.name()),
             own,
             results: results
-                .map(|array| (array.name.to_string(), shape(program, array.layout)))
+                .map(|array| (array.name.clone(), shape(program, array.layout)))
                 .collect(),
         }
     });

@@ -96,7 +96,10 @@ pub fn motion(motion: &Motion<'_>) -> String {
         .map(|(name, tape)| over_arrays(&format!("motion_{name}"), tape, motion.sizes))
         .collect();
     let on_device = "motion_FUNCTION ";
-    let mut text = format!("/* {}: motions, a thread each. */\n\n", sentence(motion.title));
+    let mut text = format!(
+        "/* {}: motions, a thread each. */\n\n",
+        sentence(motion.title)
+    );
     text += &cuda::FRAME.replace("NAME", "motion");
     text += QUALIFIERS;
     text += &constants(motion);
@@ -149,33 +152,87 @@ fn over_arrays(name: &str, tape: &Tape, sizes: [usize; 3]) -> String {
     }
     for value in written.constants() {
         let name = names.constant(&value);
-        let _ = writeln!(text, "    const double {name} = {};", Real::Double.number(&value));
+        let _ = writeln!(
+            text,
+            "    const double {name} = {};",
+            Real::Double.number(&value)
+        );
     }
     for one in written.statements() {
         statement(&mut text, &written, &one);
     }
     text += "    (void)t;\n    (void)x;\n    (void)u;\n    (void)p;\n    (void)values;\n";
-    let entries = tape.results.first().map_or(&[][..], |result| &result.entries);
+    let entries = tape
+        .results
+        .first()
+        .map_or(&[][..], |result| &result.entries);
     for (index, entry) in entries.iter().enumerate() {
-        let _ = writeln!(text, "    values[{index}] = {};", written.value(*entry).text);
+        let _ = writeln!(
+            text,
+            "    values[{index}] = {};",
+            written.value(*entry).text
+        );
     }
     text + "}\n\n"
 }
 
 /// Numbers and lists of the motion.
 fn constants(motion: &Motion<'_>) -> String {
+    let mut text = String::new();
+    for (name, value) in counts(motion) {
+        let _ = writeln!(text, "#define {name} {value}");
+    }
+    for (name, value) in numbers(motion) {
+        let _ = writeln!(text, "#define {name} {}", Real::Double.literal(value));
+    }
+    let mut list = |kind: &str, name: &str, values: Vec<String>| {
+        let values = values.join(", ");
+        let values = if values.is_empty() { "0" } else { &values };
+        let _ = writeln!(text, "motion_CONSTANT {kind} {name}[] = {{{values}}};");
+    };
+    let mut integers = |name: &str, values: &[usize]| {
+        list("int", name, values.iter().map(usize::to_string).collect());
+    };
+    let (events, ends) = (&motion.event_columns, &motion.end_columns);
+    let (ranges, followed) = (&motion.ranges, &motion.followed_columns);
+    integers("range_state", &all(ranges, |range| range.component));
+    integers("event_column", &all(events, |event| event.0));
+    integers("event_stops", &all(events, |event| usize::from(event.1)));
+    integers("followed_kind", &all(followed, |one| one.0 as usize));
+    integers("followed_column", &all(followed, |one| one.1));
+    integers("end_place", &all(ends, |end| end.0));
+    integers("end_column", &all(ends, |end| end.1));
+    let firsts = motion.noises.iter().scan(0, |next, (_, count)| {
+        let first = *next;
+        *next += count;
+        Some(first)
+    });
+    integers("noise_first", &firsts.collect::<Vec<usize>>());
+    let mut numbers = |name: &str, values: &[f64]| {
+        let written = values.iter().map(|value| Real::Double.literal(*value));
+        list("double", name, written.collect());
+    };
+    numbers("range_low", &all(ranges, |range| range.limits[0]));
+    numbers("range_high", &all(ranges, |range| range.limits[1]));
+    numbers("noise_every", &all(&motion.noises, |noise| noise.0));
+    text.push('\n');
+    text
+}
+
+fn all<T, N>(items: &[T], of: impl Fn(&T) -> N) -> Vec<N> {
+    items.iter().map(of).collect()
+}
+
+fn counts(motion: &Motion<'_>) -> [(&'static str, usize); 18] {
     let Motion {
         sizes: [states, inputs, parameters],
         method,
-        options,
         ..
     } = motion;
-    let count = |tape: &Tape| tape.results.first().map_or(0, |result| result.entries.len());
+    let count = |tape: &Tape| tape.results.first().map_or(0, |one| one.entries.len());
     let [events, followed, recorded] = [motion.events, motion.followed, motion.recorded].map(count);
     let stages = method.nodes.len() + 1;
-    let control = &method.control;
-    let mut text = String::new();
-    for (name, value) in [
+    [
         ("STATES", *states),
         ("INPUTS", *inputs),
         ("PARAMETERS", *parameters),
@@ -193,11 +250,17 @@ fn constants(motion: &Motion<'_>) -> String {
         ("NEW_RATES", stages),
         ("STAGES", stages + 1 + method.interior_stages.len()),
         ("COEFFICIENTS", 4 + method.interior.len()),
-        ("ERROR_USES_NEW_RATES", usize::from(method.error_uses_new_rates)),
-    ] {
-        let _ = writeln!(text, "#define {name} {value}");
-    }
-    for (name, value) in [
+        (
+            "ERROR_USES_NEW_RATES",
+            usize::from(method.error_uses_new_rates),
+        ),
+    ]
+}
+
+fn numbers(motion: &Motion<'_>) -> [(&'static str, f64); 12] {
+    let (options, method) = (&motion.options, &motion.method);
+    let control = &method.control;
+    [
         ("T_END", motion.end),
         ("LONGEST", motion.interval),
         ("RELATIVE", options.rtol),
@@ -210,43 +273,16 @@ fn constants(motion: &Motion<'_>) -> String {
         ("SAFETY", control.safety),
         ("SMALLEST_FACTOR", control.smallest_factor),
         ("LARGEST_FACTOR", control.largest_factor),
-    ] {
-        let _ = writeln!(text, "#define {name} {}", Real::Double.literal(value));
-    }
-    let firsts = motion.noises.iter().scan(0, |next, (_, count)| {
-        let first = *next;
-        *next += count;
-        Some(first)
-    });
-    let number = |value: f64| Real::Double.literal(value);
-    let ranges = || motion.ranges.iter();
-    let columns = || motion.followed_columns.iter();
-    let lists = [
-        ("int", "range_state", ranges().map(|range| range.component.to_string()).collect()),
-        ("double", "range_low", ranges().map(|range| number(range.limits[0])).collect()),
-        ("double", "range_high", ranges().map(|range| number(range.limits[1])).collect()),
-        ("int", "event_column", motion.event_columns.iter().map(|(column, _)| column.to_string()).collect()),
-        ("int", "event_stops", motion.event_columns.iter().map(|(_, stops)| u8::from(*stops).to_string()).collect()),
-        ("int", "followed_kind", columns().map(|(kind, _)| (*kind as u8).to_string()).collect()),
-        ("int", "followed_column", columns().map(|(_, column)| column.to_string()).collect()),
-        ("int", "end_place", motion.end_columns.iter().map(|(place, _)| place.to_string()).collect()),
-        ("int", "end_column", motion.end_columns.iter().map(|(_, column)| column.to_string()).collect()),
-        ("double", "noise_every", motion.noises.iter().map(|(every, _)| number(*every)).collect()),
-        ("int", "noise_first", firsts.map(|first: usize| first.to_string()).collect()),
-    ];
-    for (kind, name, values) in lists {
-        let values: Vec<String> = values;
-        let values = if values.is_empty() { "0".to_owned() } else { values.join(", ") };
-        let _ = writeln!(text, "motion_CONSTANT {kind} {name}[] = {{{values}}};");
-    }
-    text.push('\n');
-    text
+    ]
 }
 
 /// Σ w k of a component.
 fn sum(row: Row) -> String {
     row.iter().fold("0.0".to_owned(), |sum, (stage, weight)| {
-        format!("fma({}, m->k[{stage}][i], {sum})", Real::Double.literal(*weight))
+        format!(
+            "fma({}, m->k[{stage}][i], {sum})",
+            Real::Double.literal(*weight)
+        )
     })
 }
 
@@ -314,7 +350,12 @@ fn interior(method: &Coefficients) -> String {
     }
     text += "    for (i = 0; i < STATES; i++) {\n";
     for (index, row) in method.interior.iter().enumerate() {
-        let _ = writeln!(text, "        m->dense[{}][i] = m->h * {};", 4 + index, sum(row));
+        let _ = writeln!(
+            text,
+            "        m->dense[{}][i] = m->h * {};",
+            4 + index,
+            sum(row)
+        );
     }
     text + "    }\n}\n\n"
 }

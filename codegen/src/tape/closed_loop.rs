@@ -45,12 +45,14 @@ pub fn closed_loop(law: &Tape, functions: &[&Tape], seen: &[Seen]) -> Tape {
     let parameters: Vec<Seen> = seen.iter().filter(of_laws).copied().collect();
     let mut values = Vec::new();
     for function in functions {
-        values.extend(add(&mut composed, function, |composed, argument| {
-            match argument {
+        values.extend(add(
+            &mut composed,
+            function,
+            |composed, argument| match argument {
                 Argument::Input(input) => inputs[input as usize],
                 other => replaced(composed, other, &parameters),
-            }
-        }));
+            },
+        ));
     }
     let results = vec![ResultArray {
         name: "values".to_owned(),

@@ -20,7 +20,7 @@ impl Use {
     /// Number of operations, as [`Checked`](super::check::Checked) counts them, beyond which a function is long.
     const fn long(self) -> usize {
         match self {
-            Self::Lasting => 12_000,
+            Self::Lasting => 6000,
             Self::Brief => 1200,
         }
     }
@@ -40,10 +40,13 @@ pub(super) fn target(operations: usize, of: Use) -> Result<OwnedTargetIsa, JitEr
 
 fn detect(is_long: bool) -> Result<OwnedTargetIsa, JitError> {
     let mut flags = settings::builder();
-    flags.set("opt_level", "speed")?;
-    // Good register allocation of a long function takes minutes, and most values are spilled anyway.
+    // Good register allocation takes longer than some ten thousand evaluations save, in the end minutes; most values of a
+    // long function are spilled anyway. Tapes have no common subexpressions.
     if is_long {
+        flags.set("opt_level", "none")?;
         flags.set("regalloc_algorithm", "single_pass")?;
+    } else {
+        flags.set("opt_level", "speed")?;
     }
     // The code calls functions at any distance, by absolute address.
     flags.set("is_pic", "false")?;

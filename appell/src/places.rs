@@ -58,9 +58,11 @@ impl<'a> Rows<'a> {
 
     /// The rows of eight places from `first`; places beyond `last` are like it.
     fn load(&self, first: usize, last: usize, to: &mut [[f64; LANES]]) {
-        let rows: [&[f64]; LANES] = std::array::from_fn(|lane| self.row((first + lane).min(last)));
-        for (index, to) in to.iter_mut().enumerate().take(self.width) {
-            *to = rows.map(|row| row[index]);
+        for lane in 0..LANES {
+            let row = self.row((first + lane).min(last));
+            for (to, number) in to.iter_mut().zip(row) {
+                to[lane] = *number;
+            }
         }
     }
 }

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Processor seconds until a large robot is evaluated or moves, without and with the cache of derived equations.
 
-    python3 benches/startup/run.py [--appell PROGRAM] [--before PROGRAM] [--write]
+    python3 benches/startup/run.py [--appell PROGRAM] [--before PROGRAM] [--peers PYTHON] [--write]
 
 Robots are trees of LIMBS limbs of JOINTS hinges on a floating base, as MJCF files. --before is an earlier program, beside which
-the same commands run; it has neither the key `quantities` nor a cache. --write puts the table between its markers in
+the same commands run; it has neither the key `quantities` nor a cache. --peers is a Python with MuJoCo and Pinocchio
+(`pip install mujoco pin`), which load the same robot and compute the same once (peers.py). --write puts the table between its markers in
 docs/performance.md.
 """
 
@@ -78,7 +79,13 @@ def cells(program, folder, has_cache):
     return found
 
 
-def table(programs):
+def peer_cells(python, peer, folder):
+    """The same for a peer, whose slopes are differences (MuJoCo) or derived (Pinocchio)."""
+    script = Path(__file__).with_name("peers.py")
+    return {what: used([python, script, peer, what], folder, None) for what in ("rates", "slopes", "simulate")}
+
+
+def table(programs, peers):
     columns = {"rates": "rates, M", "slopes": "rates, M, A, B", "all": "all quantities", "simulate": "`simulate`",
                "again": "`simulate` again"}
     lines = ["| degrees of freedom | | " + " | ".join(columns.values()) + " |", "|---|---|" + "---|" * len(columns)]
@@ -87,20 +94,26 @@ def table(programs):
             folder = Path(folder)
             (folder / "robot.xml").write_text(robot(limbs, joints))
             for name, (program, has_cache) in programs.items():
-                found = cells(program, folder, has_cache)
-                told = [f"{found[key][0]:.2f} s, {found[key][1]:.0f} MB" if key in found else "" for key in columns]
-                lines.append(f"| {freedoms} | {name} | " + " | ".join(told) + " |")
+                lines.append(row(freedoms, name, cells(program, folder, has_cache), columns))
+            for peer, name in (("mujoco", "MuJoCo"), ("pinocchio", "Pinocchio")) if peers else ():
+                lines.append(row(freedoms, name, peer_cells(peers, peer, folder), columns))
     return lines
+
+
+def row(freedoms, name, found, columns):
+    told = [f"{found[key][0]:.2f} s, {found[key][1]:.0f} MB" if key in found else "" for key in columns]
+    return f"| {freedoms} | {name} | " + " | ".join(told) + " |"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--appell", type=Path, default=Path("appell"))
     parser.add_argument("--before", type=Path)
+    parser.add_argument("--peers")
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
     programs = {"before": (given.before.resolve(), False)} if given.before else {}
-    lines = table({**programs, "appell": (given.appell.resolve(), True)})
+    lines = table({**programs, "appell": (given.appell.resolve(), True)}, given.peers)
     print("\n".join(lines))
     if given.write:
         page = ROOT / "docs/performance.md"

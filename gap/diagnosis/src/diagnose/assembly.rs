@@ -158,8 +158,49 @@ fn which(
             changes: Some(Changes::of(bench, fitted)?),
         });
     }
+    let best = comparison.best();
+    let unresolved = best.members.iter();
+    let unresolved = unresolved.filter_map(|&late| of_unresolved_lag(bench, best, &which[0], late));
+    let unresolved: Vec<Hypothesis> = unresolved.collect();
+    which.extend(unresolved);
     which.push(Hypothesis::unknown(comparison.unknown));
     Ok(which)
+}
+
+/// The best hypothesis with a lag in the place of a delay that is too short to be distinguished from it.
+fn of_unresolved_lag(
+    bench: &Bench<'_>,
+    best: &Fitted,
+    first: &Hypothesis,
+    late: usize,
+) -> Option<Hypothesis> {
+    let delay = bench.candidate(late);
+    let acts = match delay.acts {
+        Acts::Delay(input) => Acts::Lag(input),
+        Acts::Late(channel) => Acts::Slow(channel),
+        _ => return None,
+    };
+    let mut candidates = bench.effects.candidates.iter();
+    let lag = candidates.position(|own| own.acts == acts && !own.is_of_group())?;
+    let own = named(delay, "delay");
+    let place = first.parameters.iter().position(|one| one.name == own)?;
+    if !bench.is_too_short(lag, &[first.parameters[place].value]) {
+        return None;
+    }
+    let mut members: Vec<usize> = best.members.clone();
+    members.retain(|&member| member != late);
+    members.push(lag);
+    members.sort_unstable();
+    let mut parameters = first.parameters.clone();
+    parameters[place].name = named(bench.candidate(lag), "time_constant");
+    Some(Hypothesis {
+        effects: names(bench.effects, &members),
+        same_as: Some(first.effects.clone()),
+        probability: 0.0,
+        log_bayes_factor: first.log_bayes_factor,
+        parameters,
+        changes: None,
+    })
 }
 
 /// The effects of a hypothesis in words.

@@ -1,10 +1,10 @@
-//! The step loop of the embedded pairs for eight motions at once.
+//! The step loop of the embedded pairs, for one motion or for eight at once.
 
 use std::array::from_fn;
 use std::marker::PhantomData;
 
 use super::block_lanes::{
-    self, BlockMotion, all, gather, idle_lanes, on_their_way, refill, scatter,
+    self, BlockMotion, Parts, all, gather, idle_lanes, on_their_way, refill, scatter,
 };
 use super::block_stages::{Block, BlockStages, Places};
 use super::dense_output::{DenseOutput, Ends, HERMITE};
@@ -19,22 +19,22 @@ use super::stops::Stride;
 use super::watch::Observer;
 use crate::lanes::LANES;
 
-/// An adaptive integrator for many motions of one system, eight at a time, with its work arrays.
+/// An adaptive integrator for many motions of one system, `L` at a time, with its work arrays.
 ///
-/// Every operation of a step acts on eight motions. Each motion has its own step size, events and end, and agrees bit
+/// Every operation of a step acts on all motions of a block. Each motion has its own step size, events and end, and agrees bit
 /// for bit with that of [`Solver`](super::Solver), whatever the other lanes contain. When one ends, the next takes
 /// its lane.
 #[derive(Debug, Clone)]
-pub struct BlockSolver<P> {
-    stages: BlockStages,
-    clock: Clock,
+pub struct BlockSolver<P, const L: usize = LANES> {
+    stages: BlockStages<L>,
+    clock: Clock<L>,
     dense: DenseOutput,
     /// State and rates of one motion at both ends of a step.
     ends: [Vec<f64>; 4],
     pair: PhantomData<P>,
 }
 
-impl<P> Default for BlockSolver<P> {
+impl<P, const L: usize> Default for BlockSolver<P, L> {
     fn default() -> Self {
         Self {
             stages: BlockStages::default(),
@@ -47,17 +47,24 @@ impl<P> Default for BlockSolver<P> {
 }
 
 /// Times of the steps of all lanes.
-#[derive(Debug, Clone, Copy, Default)]
-struct Clock {
-    t: Block,
-    h: Block,
-    t_new: Block,
-    last: Block,
+#[derive(Debug, Clone, Copy)]
+struct Clock<const L: usize> {
+    t: Block<L>,
+    h: Block<L>,
+    t_new: Block<L>,
+    last: Block<L>,
 }
 
-impl Clock {
+impl<const L: usize> Default for Clock<L> {
+    fn default() -> Self {
+        let [t, h, t_new, last] = [[0.0; L]; 4];
+        Self { t, h, t_new, last }
+    }
+}
+
+impl<const L: usize> Clock<L> {
     /// Times of a node, not beyond a switching time, before which the old rates apply.
-    fn at(&self, node: f64) -> Block {
+    fn at(&self, node: f64) -> Block<L> {
         let mut times = self.last;
         for (l, time) in times.iter_mut().enumerate() {
             *time = (self.t[l] + node * self.h[l]).min(*time);
@@ -66,7 +73,7 @@ impl Clock {
     }
 
     /// Times of the ends.
-    fn at_end(&self) -> Block {
+    fn at_end(&self) -> Block<L> {
         let mut times = self.last;
         for (time, t_new) in times.iter_mut().zip(self.t_new) {
             *time = t_new.min(*time);
@@ -110,9 +117,9 @@ impl Steps {
 }
 
 type Lane<'m, 'a, O> = block_lanes::Lane<'m, 'a, O, Steps>;
-type Lanes<'m, 'a, O> = block_lanes::Lanes<'m, 'a, O, Steps>;
+type Lanes<'m, 'a, O, const L: usize> = block_lanes::Lanes<'m, 'a, O, Steps, L>;
 
-impl<P: EmbeddedPair> BlockSolver<P> {
+impl<P: EmbeddedPair, const L: usize> BlockSolver<P, L> {
     /// A solver for systems of any size.
     pub fn new() -> Self {
         Self::default()
@@ -133,7 +140,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         options: &Options,
     ) -> Vec<Result<Outcome, IntegrationError>>
     where
-        F: FnMut(&[usize; LANES], Places<'_>, &mut [Block]),
+        F: FnMut(&[usize; L], Places<'_, L>, &mut [Block<L>]),
         O: Observer,
     {
         let n = motions.first().map_or(0, |motion| motion.x.len());
@@ -149,20 +156,40 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         if let Some(refused) = refused {
             return motions.iter().map(|_| Err(refused.clone())).collect();
         }
+        self.run(
+            &mut f,
+            motions.iter_mut().map(BlockMotion::parts),
+            n,
+            options,
+        )
+    }
+
+    /// Integrates valid motions of `n` states.
+    pub(super) fn run<'m, 'a: 'm, F, O>(
+        &mut self,
+        f: &mut F,
+        motions: impl ExactSizeIterator<Item = Parts<'m, 'a, O>>,
+        n: usize,
+        options: &Options,
+    ) -> Vec<Result<Outcome, IntegrationError>>
+    where
+        F: FnMut(&[usize; L], Places<'_, L>, &mut [Block<L>]),
+        O: Observer + 'm,
+    {
         self.stages.prepare(n, P::ALL_STAGES);
         self.dense.prepare(n, P::INTERIOR_COEFFICIENTS);
         for end in &mut self.ends {
             end.resize(n, 0.0);
         }
-        let mut results: Vec<_> = motions.iter().map(|_| None).collect();
-        let mut waiting = motions.iter_mut().enumerate();
-        let mut lanes: Lanes<'_, '_, O> = from_fn(|_| None);
-        let mut which = [0; LANES];
+        let mut results: Vec<_> = (0..motions.len()).map(|_| None).collect();
+        let mut waiting = motions.enumerate();
+        let mut lanes: Lanes<'_, '_, O, L> = from_fn(|_| None);
+        let mut which = [0; L];
         loop {
             let mut begin = |l: usize| {
                 let (motion, of) = waiting.next()?;
                 which[l] = motion;
-                self.stages.begin(l, &of.x, of.parameters);
+                self.stages.begin(l, of.x, of.parameters);
                 let lane = Lane::new(motion, of, Steps::new(P::CONTROL));
                 self.clock.set(l, lane.t, lane.stride);
                 Some(lane)
@@ -174,7 +201,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
                 self.clock.idle(l, beside);
                 self.stages.copy(beside, l);
             }
-            let mut f = |at: Places<'_>, rates: &mut [Block]| f(&which, at, rates);
+            let mut f = |at: Places<'_, L>, rates: &mut [Block<L>]| f(&which, at, rates);
             self.start(&mut f, &mut lanes, options);
             let errors = self.attempt(&mut f, &mut lanes, options);
             self.decide(&mut f, &mut lanes, &errors, options);
@@ -183,9 +210,9 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 
     /// Evaluates the rates at starts and restarts, and sets the next step of each motion.
-    fn start<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
+    fn start<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O, L>, options: &Options)
     where
-        F: FnMut(Places<'_>, &mut [Block]),
+        F: FnMut(Places<'_, L>, &mut [Block<L>]),
         O: Observer,
     {
         if on_their_way(lanes).any(|(_, lane)| lane.restart) {
@@ -222,15 +249,15 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 
     /// First steps from the norms of x, ẋ and ẍ, limited by the next stops.
-    fn first_steps<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
+    fn first_steps<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O, L>, options: &Options)
     where
-        F: FnMut(Places<'_>, &mut [Block]),
+        F: FnMut(Places<'_, L>, &mut [Block<L>]),
         O: Observer,
     {
         let begins = |(_, lane): &(usize, &mut Lane<'_, '_, O>)| lane.steps.next_h.is_none();
         let mut t = self.clock.t;
         // Lanes that need a first step: initial estimate, longest step.
-        let mut guesses: [Option<[f64; 2]>; LANES] = [None; LANES];
+        let mut guesses: [Option<[f64; 2]>; L] = [None; L];
         for (l, lane) in on_their_way(lanes).filter(begins) {
             let stop = lane.watcher.stops.known_after(lane.t);
             let longest = options
@@ -278,15 +305,20 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 
     /// All stages of a step; the weighted errors, NaN where a new state is not finite.
-    fn attempt<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options) -> Block
+    fn attempt<F, O>(
+        &mut self,
+        f: &mut F,
+        lanes: &mut Lanes<'_, '_, O, L>,
+        options: &Options,
+    ) -> Block<L>
     where
-        F: FnMut(Places<'_>, &mut [Block]),
+        F: FnMut(Places<'_, L>, &mut [Block<L>]),
         O: Observer,
     {
         let clock = self.clock;
         self.stages
             .step(f, &P::TABLEAU, &clock.h, |node| clock.at(node));
-        let mut valid = [true; LANES];
+        let mut valid = [true; L];
         for (l, lane) in on_their_way(lanes) {
             lane.statistics.evaluations += P::TABLEAU.nodes.len();
             if lane.watcher.projects() {
@@ -297,11 +329,11 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             }
         }
         if P::ERROR_USES_NEW_RATES {
-            self.new_rates(f, lanes, [true; LANES]);
+            self.new_rates(f, lanes, [true; L]);
         }
         let finite = self.stages.scale_by(options);
         let mut errors = P::errors(|row| self.stages.mean_squares(row), &clock.h);
-        for l in 0..LANES {
+        for l in 0..L {
             if !(valid[l] && finite[l]) {
                 errors[l] = f64::NAN;
             }
@@ -310,9 +342,9 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 
     /// Rates at the ends of the steps.
-    fn new_rates<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, of: [bool; LANES])
+    fn new_rates<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O, L>, of: [bool; L])
     where
-        F: FnMut(Places<'_>, &mut [Block]),
+        F: FnMut(Places<'_, L>, &mut [Block<L>]),
         O: Observer,
     {
         let t = self.clock.at_end();
@@ -326,15 +358,15 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     fn decide<F, O>(
         &mut self,
         f: &mut F,
-        lanes: &mut Lanes<'_, '_, O>,
-        errors: &Block,
+        lanes: &mut Lanes<'_, '_, O, L>,
+        errors: &Block<L>,
         options: &Options,
     ) where
-        F: FnMut(Places<'_>, &mut [Block]),
+        F: FnMut(Places<'_, L>, &mut [Block<L>]),
         O: Observer,
     {
         let powers = powers(P::CONTROL, errors);
-        let mut accepted = [false; LANES];
+        let mut accepted = [false; L];
         for (l, lane) in on_their_way(lanes) {
             accepted[l] = errors[l] <= 1.0;
             if accepted[l] {
@@ -357,7 +389,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         }
         // Whether the step is accepted; `None` if dense output is needed to decide.
         let accept = |this: &mut Self, l: usize, lane: &mut Lane<'_, '_, O>, within: bool| {
-            let ends = ends::<P>(&this.stages, &mut this.ends, l, lane);
+            let ends = ends::<P, L>(&this.stages, &mut this.ends, l, lane);
             if within {
                 lane.statistics.evaluations += P::INTERIOR_STAGES.len();
                 this.dense.set_hermite(&ends);
@@ -397,7 +429,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             lane.finish_at_end();
             Some(true)
         };
-        let mut wanted = [false; LANES];
+        let mut wanted = [false; L];
         let exact = accepted;
         for (l, lane) in on_their_way(lanes).filter(|&(l, _)| exact[l]) {
             let outcome = accept(self, l, lane, false);
@@ -430,8 +462,8 @@ impl<P: EmbeddedPair> BlockSolver<P> {
 }
 
 /// Both ends of a step of one motion.
-fn ends<'e, P: EmbeddedPair>(
-    stages: &BlockStages,
+fn ends<'e, P: EmbeddedPair, const L: usize>(
+    stages: &BlockStages<L>,
     numbers: &'e mut [Vec<f64>; 4],
     l: usize,
     lane: &Lane<'_, '_, impl Observer>,

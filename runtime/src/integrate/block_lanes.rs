@@ -5,7 +5,6 @@ use super::error::{Cause, IntegrationError};
 use super::outcome::{Outcome, Statistics};
 use super::stops::Stride;
 use super::watch::{End, Observer, Watch, Watcher};
-use crate::lanes::LANES;
 
 /// A motion of a block.
 #[derive(Debug)]
@@ -20,6 +19,27 @@ pub struct BlockMotion<'a, O> {
     pub watch: Watch<'a>,
     /// Receives the accepted steps.
     pub observer: O,
+}
+
+/// The parts of a motion.
+pub(super) struct Parts<'m, 'a, O> {
+    pub(super) span: [f64; 2],
+    pub(super) x: &'m mut [f64],
+    pub(super) parameters: &'a [f64],
+    pub(super) watch: &'m mut Watch<'a>,
+    pub(super) observer: &'m mut O,
+}
+
+impl<'a, O> BlockMotion<'a, O> {
+    pub(super) fn parts(&mut self) -> Parts<'_, 'a, O> {
+        Parts {
+            span: self.span,
+            x: &mut self.x,
+            parameters: self.parameters,
+            watch: &mut self.watch,
+            observer: &mut self.observer,
+        }
+    }
 }
 
 /// An active motion; `S` is the step-size control of the method.
@@ -38,13 +58,13 @@ pub(super) struct Lane<'m, 'a, O, S> {
 }
 
 impl<'m, 'a, O: Observer, S> Lane<'m, 'a, O, S> {
-    pub(super) fn new(motion: usize, of: &'m mut BlockMotion<'a, O>, steps: S) -> Self {
+    pub(super) fn new(motion: usize, of: Parts<'m, 'a, O>, steps: S) -> Self {
         let t = of.span[0];
-        let mut watcher = Watcher::new(&mut of.watch, &mut of.observer, of.span).paced(t);
-        let start = watcher.start(t, &of.x);
+        let mut watcher = Watcher::new(of.watch, of.observer, of.span).paced(t);
+        let start = watcher.start(t, of.x);
         let mut lane = Self {
             motion,
-            x: &mut of.x,
+            x: of.x,
             watcher,
             statistics: Statistics::default(),
             t,
@@ -74,15 +94,15 @@ impl<'m, 'a, O: Observer, S> Lane<'m, 'a, O, S> {
 }
 
 /// The lanes of a block; those without a motion are empty.
-pub(super) type Lanes<'m, 'a, O, S> = [Option<Lane<'m, 'a, O, S>>; LANES];
+pub(super) type Lanes<'m, 'a, O, S, const L: usize> = [Option<Lane<'m, 'a, O, S>>; L];
 
 /// Results of the motions that have ended.
 pub(super) type Results = [Option<Result<Outcome, IntegrationError>>];
 
 /// Concludes the motions that have ended and assigns waiting ones to their lanes. Returns an active lane, or `None`
 /// once all motions have ended.
-pub(super) fn refill<'m, 'a, O: Observer, S>(
-    lanes: &mut Lanes<'m, 'a, O, S>,
+pub(super) fn refill<'m, 'a, O: Observer, S, const L: usize>(
+    lanes: &mut Lanes<'m, 'a, O, S, L>,
     begin: &mut impl FnMut(usize) -> Option<Lane<'m, 'a, O, S>>,
     results: &mut Results,
 ) -> Option<usize> {
@@ -102,13 +122,13 @@ pub(super) fn refill<'m, 'a, O: Observer, S>(
 }
 
 /// Empty lanes.
-pub(super) fn idle_lanes<O, S>(lanes: &Lanes<'_, '_, O, S>) -> Vec<usize> {
-    (0..LANES).filter(|&l| lanes[l].is_none()).collect()
+pub(super) fn idle_lanes<O, S, const L: usize>(lanes: &Lanes<'_, '_, O, S, L>) -> Vec<usize> {
+    (0..L).filter(|&l| lanes[l].is_none()).collect()
 }
 
 /// The active motions, with their lanes.
-pub(super) fn on_their_way<'l, 'm, 'a, O, S>(
-    lanes: &'l mut Lanes<'m, 'a, O, S>,
+pub(super) fn on_their_way<'l, 'm, 'a, O, S, const L: usize>(
+    lanes: &'l mut Lanes<'m, 'a, O, S, L>,
 ) -> impl Iterator<Item = (usize, &'l mut Lane<'m, 'a, O, S>)> {
     let all = lanes.iter_mut().enumerate();
     all.filter_map(|(l, lane)| Some((l, lane.as_mut()?)))
@@ -133,14 +153,14 @@ pub(super) fn all(
 }
 
 /// Copies the entries of a lane.
-pub(super) fn gather(blocks: &[Block], l: usize, to: &mut [f64]) {
+pub(super) fn gather<const L: usize>(blocks: &[Block<L>], l: usize, to: &mut [f64]) {
     for (to, block) in to.iter_mut().zip(blocks) {
         *to = block[l];
     }
 }
 
 /// Writes the entries of a lane.
-pub(super) fn scatter(from: &[f64], l: usize, blocks: &mut [Block]) {
+pub(super) fn scatter<const L: usize>(from: &[f64], l: usize, blocks: &mut [Block<L>]) {
     for (from, block) in from.iter().zip(blocks) {
         block[l] = *from;
     }

@@ -1,11 +1,12 @@
 //! The classical Runge–Kutta method with a fixed step.
 
+use super::block_stages::{BlockStages, Places};
 use super::dense_output::DenseOutput;
 use super::error::{Cause, IntegrationError};
 use super::options::check_span;
 use super::outcome::{Outcome, Statistics};
 use super::stops::Stride;
-use super::tableau::{Stages, Tableau};
+use super::tableau::Tableau;
 use super::watch::{End, Observer, Watch, Watcher};
 
 /// Hairer, Nørsett and Wanner, table II.1.2.
@@ -24,7 +25,7 @@ const TABLEAU: Tableau = Tableau {
 /// Hermite polynomial.
 #[derive(Debug, Clone, Default)]
 pub struct Rk4 {
-    stages: Stages,
+    stages: BlockStages<1>,
     dense: DenseOutput,
 }
 
@@ -59,13 +60,14 @@ impl Rk4 {
                 value: step,
             });
         }
-        self.stages.prepare(x, TABLEAU.new_rates() + 1);
+        self.stages.prepare(x.len(), TABLEAU.new_rates() + 1);
+        self.stages.begin(0, x, &[]);
         self.dense.prepare(x.len(), 4);
         let mut watcher = Watcher::new(watch, observer, span).paced(span[0]);
         let mut statistics = Statistics::default();
-        let mut counted = |t: f64, x: &[f64], rates: &mut [f64]| {
+        let mut counted = |at: Places<'_, 1>, rates: &mut [[f64; 1]]| {
             statistics.evaluations += 1;
-            f(t, x, rates);
+            f(at.t[0], at.x.as_flattened(), rates.as_flattened_mut());
         };
         let end = match watcher.start(span[0], x) {
             Ok(()) => self.run(
@@ -91,14 +93,14 @@ impl Rk4 {
         steps: &mut usize,
     ) -> End
     where
-        F: FnMut(f64, &[f64], &mut [f64]),
+        F: FnMut(Places<'_, 1>, &mut [[f64; 1]]),
         O: Observer,
     {
         let new_rates = TABLEAU.new_rates();
         let (mut t, mut h, mut restart) = (t_start, step, true);
         while t < watcher.stops.end() {
             if restart {
-                self.stages.evaluate_at_start(f, 0, t);
+                self.stages.evaluate_at_start(f, 0, &[t]);
                 h = equal_part(watcher.stops.known_after(t).t - t, step);
             }
             let mut stride = watcher.stops.stride(t, h);
@@ -137,9 +139,9 @@ impl Rk4 {
             }
             let switched = watcher.switched();
             if switched.is_some() {
-                self.stages.x_new_mut().copy_from_slice(x);
+                self.stages.new_state_mut().copy_from_slice(x);
             }
-            self.stages.advance(new_rates);
+            self.stages.advance([true], new_rates);
             (t, restart) = switched.map_or((stride.t_new, stride.lands), |t| (t, true));
         }
         End::finished(t)
@@ -154,19 +156,21 @@ impl Rk4 {
         watcher: &mut Watcher<'_, '_, O>,
     ) -> Result<(), Cause>
     where
-        F: FnMut(f64, &[f64], &mut [f64]),
+        F: FnMut(Places<'_, 1>, &mut [[f64; 1]]),
         O: Observer,
     {
         let new_rates = TABLEAU.new_rates();
-        let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
-        self.stages.step(&mut f, &TABLEAU, t, stride.h);
-        let projected = watcher.project(stride.t_new, self.stages.x_new_mut());
-        self.stages.evaluate_at_end(&mut f, new_rates, stride.t_new);
+        let time = |t: f64| [t.min(stride.last)];
+        self.stages
+            .step(f, &TABLEAU, &[stride.h], |node| time(t + node * stride.h));
+        let projected = watcher.project(stride.t_new, self.stages.new_state_mut());
+        self.stages
+            .evaluate_at_end(f, new_rates, &time(stride.t_new));
         if !projected {
             return Err(Cause::Inconsistent);
         }
-        let not_finite = self.stages.rate_not_finite(new_rates);
-        match not_finite.or_else(|| self.stages.state_not_finite()) {
+        let not_finite = self.stages.rate_not_finite(0, new_rates);
+        match not_finite.or_else(|| self.stages.state_not_finite(0)) {
             Some(component) => Err(Cause::NonFinite { component }),
             None => Ok(()),
         }

@@ -22,7 +22,7 @@ mod types;
 use quote::quote;
 
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{Tuning, schedule_tuned};
+use crate::schedule::schedule;
 use crate::tape::OperationCount;
 use types::Types;
 
@@ -38,8 +38,6 @@ pub struct Options {
     /// Whether to emit `INFO` and the implementation of `Model`, which need the standard library
     /// and all functions.
     pub model_impl: bool,
-    /// Cost model of the schedules.
-    pub tuning: Tuning,
     /// Text of the spec, emitted as the constant `SPEC`.
     pub spec: Option<String>,
 }
@@ -50,7 +48,6 @@ impl Default for Options {
             functions: Vec::new(),
             runtime: "::appell_runtime".to_owned(),
             model_impl: true,
-            tuning: Tuning::default(),
             spec: None,
         }
     }
@@ -98,7 +95,7 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     let mut items = Vec::new();
     let mut solves = false;
     for &function in &functions {
-        let tape = schedule_tuned(program, function, options.tuning);
+        let tape = schedule(program, function);
         let cost = OperationCount::of(&tape);
         solves |= cost.solves > 0;
         results.extend(types.results_struct(function));

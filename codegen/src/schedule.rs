@@ -3,7 +3,7 @@
 //! | file | pass |
 //! |---|---|
 //! | `lower.rs`, `dag.rs` | the symbolic graph as a working graph of n-ary sums and products |
-//! | `search.rs`, `tuning.rs`, `preference.rs` | several orders of the rewriting passes; the cheapest result |
+//! | `search.rs`, `preference.rs` | several orders of the rewriting passes; the cheapest result |
 //! | `factor.rs`, `gather.rs` | common factors; distribution where the parts are available |
 //! | `share.rs` | common-subexpression elimination inside sums and products |
 //! | `cancel.rs`, `divide.rs` | cancelled denominators; shared reciprocals |
@@ -33,10 +33,8 @@ mod scale;
 mod search;
 mod share;
 mod signs;
-mod tuning;
 
 pub use pi::pi;
-pub use tuning::Tuning;
 
 use crate::program::{self, Program};
 use crate::tape::Tape;
@@ -47,17 +45,8 @@ use crate::tape::Tape;
 /// If an expression contains a symbol that is not an argument of the program, which would be a bug of the
 /// derivation.
 pub fn schedule(program: &Program, function: &program::Function) -> Tape {
-    schedule_tuned(program, function, Tuning::default())
-}
-
-/// [`schedule`] with a different cost model or search effort.
-///
-/// # Panics
-///
-/// As [`schedule`].
-pub fn schedule_tuned(program: &Program, function: &program::Function, tuning: Tuning) -> Tape {
     let derived = lower::lower(program, function);
-    let cheapest = search::cheapest(&derived, tuning);
+    let cheapest = search::cheapest(&derived);
     let hints = meet::known_values(&cheapest, &lower::hints(program, function));
     bind::bind(program, function, &cheapest, hints)
 }

@@ -11,7 +11,7 @@
 use std::collections::BTreeSet;
 
 use appell_codegen::program::{Function, FunctionKind, Layout, Program};
-use appell_codegen::schedule::{Tuning, schedule, schedule_tuned};
+use appell_codegen::schedule::schedule;
 use appell_codegen::symbolic::{Expr, Graph, Rational, Relation, evaluate};
 use appell_codegen::tape::{Operation, OperationCount, Tape, interpret};
 
@@ -288,29 +288,6 @@ fn denominators_cancel() {
     });
     let count = OperationCount::of(&schedule);
     assert_eq!((count.add, count.multiply, count.divide), (2, 0, 1));
-}
-
-#[test]
-fn independent_denominators_share_a_division_where_divisions_are_dear() {
-    let program = unicycle();
-    let rates = program
-        .functions
-        .iter()
-        .find(|f| f.kind == FunctionKind::Rates)
-        .unwrap();
-    let tuning = Tuning {
-        division: 10,
-        ..Tuning::default()
-    };
-    let joint = schedule_tuned(&program, rates, tuning);
-    assert_eq!(OperationCount::of(&joint).divide, 2);
-    let separate = schedule(&program, rates);
-    let mut numbers = Numbers::new(5);
-    let (x, u, p) = (numbers.list(10), numbers.list(1), numbers.list(4));
-    let [joint, separate] = [joint, separate].map(|s| interpret(&s, 0.0, &x, &u, &p).concat());
-    for (joint, separate) in joint.iter().zip(&separate) {
-        assert!((joint - separate).abs() < 1e-12 * (1.0 + separate.abs()));
-    }
 }
 
 #[test]

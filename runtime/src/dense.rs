@@ -5,7 +5,6 @@
 //! Nothing panics: a singular matrix gives non-finite numbers.
 
 use crate::Real;
-use core::array::from_fn;
 
 /// P A = L U with partial pivoting, `N` rows and columns (Golub and Van Loan, *Matrix
 /// Computations*, 4th edition, algorithm 3.4.1).
@@ -79,37 +78,6 @@ pub fn solve<T: Real, const N: usize>(matrix: [[T; N]; N], right: [T; N]) -> [T;
     lu_solve(&lu_factor(matrix), right)
 }
 
-impl<T: Real, const N: usize> Lu<T, N> {
-    /// The pivots, the diagonal of U, in the order of elimination.
-    #[inline]
-    pub fn pivots(&self) -> [T; N] {
-        from_fn(|k| self.factors[k][k])
-    }
-
-    /// The smallest absolute pivot, in the unit of the matrix; 0 for a singular matrix or one with a NaN.
-    #[inline]
-    pub fn smallest_pivot(&self) -> T {
-        let infinity = T::constant(f64::INFINITY);
-        self.pivots()
-            .iter()
-            .fold(infinity, |smallest, pivot| smaller(smallest, pivot.abs()))
-    }
-
-    /// 1 / (‖A‖₁ ‖A⁻¹‖₁): 1 for the identity, near machine precision if solutions lose all digits. `matrix` is the
-    /// matrix that was factored. Costs `N` solutions. A singular matrix gives 0 or NaN.
-    pub fn reciprocal_condition(&self, matrix: &[[T; N]; N]) -> T {
-        let zero = T::constant(0.0);
-        let (mut norm, mut inverse_norm) = (zero, zero);
-        for j in 0..N {
-            let unit: [T; N] = from_fn(|i| T::constant(if i == j { 1.0 } else { 0.0 }));
-            let column: [T; N] = from_fn(|i| matrix[i][j]);
-            norm = larger(norm, absolute_sum(column));
-            inverse_norm = larger(inverse_norm, absolute_sum(lu_solve(self, unit)));
-        }
-        T::constant(1.0) / (norm * inverse_norm)
-    }
-}
-
 /// (`lower`, `upper`) where `exchange` is 1, (`upper`, `lower`) where it is 0.
 #[inline]
 fn exchange_if<T: Real>(exchange: T, upper: T, lower: T) -> (T, T) {
@@ -118,25 +86,6 @@ fn exchange_if<T: Real>(exchange: T, upper: T, lower: T) -> (T, T) {
         T::if_less(zero, exchange, lower, upper),
         T::if_less(zero, exchange, upper, lower),
     )
-}
-
-#[inline]
-fn absolute_sum<T: Real, const N: usize>(column: [T; N]) -> T {
-    column
-        .iter()
-        .fold(T::constant(0.0), |sum, entry| sum + entry.abs())
-}
-
-/// The minimum of two numbers; 0 if `b` is NaN.
-#[inline]
-fn smaller<T: Real>(a: T, b: T) -> T {
-    T::if_less(b, a, b, T::if_less_or_equal(a, b, a, T::constant(0.0)))
-}
-
-/// The maximum of two numbers; NaN in `b` propagates.
-#[inline]
-fn larger<T: Real>(a: T, b: T) -> T {
-    T::if_less(b, a, a, b)
 }
 
 /// Solves A X = B in place for sizes known at run time and returns the smallest absolute pivot.

@@ -2,7 +2,7 @@
 
 use appell_runtime::dense::{lu_factor, lu_solve, lu_solve_in_place, solve};
 use appell_runtime::{Dual, Lanes, Real};
-use nalgebra::{DMatrix, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 
 /// Numbers in −1 … 1 from a linear congruential generator (Knuth's MMIX constants).
 struct Numbers(u64);
@@ -36,29 +36,11 @@ fn agrees_with_nalgebra<const N: usize>(numbers: &mut Numbers) {
         let x = SVector::<f64, N>::from(solve(a, b));
         let residual = (matrix * x - right).amax();
         assert!(residual < SOLVE_TOLERANCE * x.amax(), "{residual:e}");
-
-        let lu = lu_factor(a);
-        let condition = |inverse: SMatrix<f64, N, N>| {
-            let norm = |m: SMatrix<f64, N, N>| {
-                m.column_iter()
-                    .map(|c| c.iter().map(|x| x.abs()).sum::<f64>())
-                    .fold(0.0, f64::max)
-            };
-            1.0 / (norm(matrix) * norm(inverse))
-        };
-        let Some(inverse) = matrix.try_inverse() else {
-            panic!("singular by chance")
-        };
-        let ratio = lu.reciprocal_condition(&a) / condition(inverse);
-        assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
-        let matrix = DMatrix::from_fn(N, N, |i, j| a[i][j]);
-        let determinant = lu.pivots().iter().product::<f64>().abs();
-        assert!((determinant - matrix.determinant().abs()).abs() < 1e-12);
     }
 }
 
 #[test]
-fn solutions_conditions_and_determinants_agree_with_nalgebra() {
+fn solutions_agree_with_nalgebra() {
     let mut numbers = Numbers(1);
     agrees_with_nalgebra::<1>(&mut numbers);
     agrees_with_nalgebra::<2>(&mut numbers);
@@ -79,11 +61,10 @@ fn the_slice_version_agrees_bit_by_bit() {
         let (x, y) = (lu_solve(&lu, b), lu_solve(&lu, c));
         let mut matrix: Vec<f64> = a.concat();
         let mut right: Vec<f64> = b.iter().zip(&c).flat_map(|(b, c)| [*b, *c]).collect();
-        let smallest = lu_solve_in_place(&mut matrix, &mut right, 5);
+        lu_solve_in_place(&mut matrix, &mut right, 5);
         let expected: Vec<f64> = x.iter().zip(&y).flat_map(|(x, y)| [*x, *y]).collect();
         let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&right), bits(&expected));
-        assert_eq!(smallest.to_bits(), lu.smallest_pivot().to_bits());
     }
 }
 
@@ -151,9 +132,6 @@ fn singular_matrices_give_numbers_that_are_not_finite() {
         let lu = lu_factor(a);
         let x = lu_solve(&lu, [1.0, 2.0, 3.0]);
         assert!(x.iter().any(|x| !x.is_finite()), "{a:?}: {x:?}");
-        assert!(lu.smallest_pivot().abs() == 0.0, "{a:?}: {lu:?}");
-        let condition = lu.reciprocal_condition(&a);
-        assert!(condition.is_nan() || condition <= 0.0);
         let dual = solve(
             a.map(|row| row.map(Dual::<f64, 2>::constant)),
             [Dual::constant(1.0); 3],

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use appell_codegen::program::{FunctionKind, Program};
-use appell_codegen::schedule::{Tuning, schedule, schedule_tuned};
+use appell_codegen::schedule::schedule;
 use appell_codegen::tape::OperationCount;
 use appell_tests::shipped;
 
@@ -157,22 +157,17 @@ fn a_rolling_body_turns_about_its_contact() {
     assert!(from_centre <= 261, "{from_centre}");
 }
 
-/// Operations of a function of the unicycle where a division counts as so many others.
-fn of_unicycle(kind: FunctionKind, division: usize) -> OperationCount {
+/// Operations of a function of the unicycle.
+fn of_unicycle(kind: FunctionKind) -> OperationCount {
     let program = shipped::program("unicycle");
     let function = program.functions.iter().find(|f| f.kind == kind).unwrap();
-    let tuning = Tuning {
-        division,
-        ..Tuning::default()
-    };
-    OperationCount::of(&schedule_tuned(program, function, tuning))
+    OperationCount::of(&schedule(program, function))
 }
 
 #[test]
 fn the_unicycle_takes_at_most_90_operations_for_rates_and_200_with_jacobians() {
-    let division = Tuning::default().division;
     for (kind, most) in [(FunctionKind::Rates, 90), (FunctionKind::Jacobians, 200)] {
-        let count = of_unicycle(kind, division);
+        let count = of_unicycle(kind);
         assert!(count.total() <= most, "{count}");
         assert!(count.divide <= 4, "{count}");
         assert_eq!(count.sin_cos, 2, "{count}");
@@ -182,13 +177,6 @@ fn the_unicycle_takes_at_most_90_operations_for_rates_and_200_with_jacobians() {
             "{count}"
         );
     }
-}
-
-#[test]
-fn two_divisions_are_enough_for_the_rates_of_the_unicycle_where_divisions_are_dear() {
-    let count = of_unicycle(FunctionKind::Rates, 6);
-    assert!(count.divide <= 2, "{count}");
-    assert!(count.total() - count.divide <= 90, "{count}");
 }
 
 #[test]

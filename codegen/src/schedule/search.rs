@@ -2,7 +2,7 @@
 
 use super::cancel::cancel;
 use super::dag::{Dag, Id};
-use super::divide::{divide_early, join_divisions, share_reciprocals};
+use super::divide::{divide_early, share_reciprocals};
 use super::factor::factor;
 use super::gather::{gather, scatter};
 use super::meet::{meet, meet_in_multiples, meet_in_parts, name_again, refer_to_kept};
@@ -10,7 +10,6 @@ use super::preference::Preference;
 use super::rebuild::{Dissolve, rebuild};
 use super::scale::scale;
 use super::share::{Within, share};
-use super::tuning::Tuning;
 
 /// A rewriting pass.
 #[derive(Debug, Clone, Copy)]
@@ -79,15 +78,21 @@ const NAME: usize = 1;
 /// Most iterations of value numbering: merging nodes makes further ones equal.
 const MEETINGS: usize = 4;
 
+/// Cost of a division in operations.
+const DIVISION: usize = 3;
+/// Budget of nodes that the search processes: enough to try every plan on small functions; on large ones only the first two
+/// plans are tried.
+const EFFORT: usize = 400;
+
 /// The cheapest equivalent graph found; on a tie the earlier plan wins.
-pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
-    let weigh = |dag: &Dag| dag.weight(&dag.order(), tuning.division);
+pub(super) fn cheapest(derived: &Dag) -> Dag {
+    let weigh = |dag: &Dag| dag.weight(&dag.order(), DIVISION);
     let mut best = finish(rebuild(derived, Dissolve::Unnamed));
     let mut least = weigh(&best);
     let mut effort = 0;
     for (number, plan) in PLANS.into_iter().enumerate() {
         effort += derived.len() * plan.levels.len();
-        if number >= 2 && effort > tuning.effort {
+        if number >= 2 && effort > EFFORT {
             break;
         }
         let candidate = finish(follow(derived, plan));
@@ -102,12 +107,8 @@ pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
         }
     }
     let mut best = merged(best);
-    let joint = joined(&best);
-    if weigh(&joint) < weigh(&best) {
-        best = joint;
-    }
     let order = best.order();
-    divide_early(&mut best, &order, tuning.division);
+    divide_early(&mut best, &order, DIVISION);
     name_again(&mut best, derived);
     best
 }
@@ -172,12 +173,4 @@ fn finish(mut dag: Dag) -> Dag {
     let order = dag.order();
     share_reciprocals(&mut dag, &order);
     rebuild(&dag, Dissolve::Unnamed)
-}
-
-/// Minimises the number of divisions.
-fn joined(dag: &Dag) -> Dag {
-    let mut joint = dag.clone();
-    let order = joint.order();
-    join_divisions(&mut joint, &order);
-    rebuild(&joint, Dissolve::Unnamed)
 }

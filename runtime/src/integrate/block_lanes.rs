@@ -59,12 +59,19 @@ pub(super) struct Lane<'m, 'a, O, S> {
 
 impl<'m, 'a, O: Observer, S> Lane<'m, 'a, O, S> {
     pub(super) fn new(motion: usize, of: Parts<'m, 'a, O>, steps: S) -> Self {
-        let t = of.span[0];
-        let mut watcher = Watcher::new(of.watch, of.observer, of.span).paced(t);
-        let start = watcher.start(t, of.x);
+        let Parts {
+            span,
+            x,
+            watch,
+            observer,
+            ..
+        } = of;
+        let t = span[0];
+        let mut watcher = Watcher::new(watch, observer, span).paced(t);
+        let start = watcher.start(t, x);
         let mut lane = Self {
             motion,
-            x: of.x,
+            x,
             watcher,
             statistics: Statistics::default(),
             t,

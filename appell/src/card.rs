@@ -16,7 +16,12 @@ use crate::{Error, Field};
 pub struct OnCard {
     card: Card,
     functions: Vec<(c::Kernel, Kernel)>,
+    /// Numbers of states and of parameters.
+    widths: [usize; 2],
 }
+
+/// Most entries of an array.
+const MOST: usize = 1 << 30;
 
 /// The places of a call, by the addresses of their arrays in the memory of the card.
 #[derive(Debug, Clone, Copy)]
@@ -50,13 +55,14 @@ impl OnCard {
             functions: functions.to_vec(),
             ..Options::default()
         };
-        let (text, kernels) = source.kernels(&options)?;
+        let (text, kernels, widths) = source.kernels(&options)?;
         let card = Card::first().map_err(refused)?;
         let names: Vec<&str> = kernels.iter().map(|kernel| kernel.name.as_str()).collect();
         let compiled = card.compile(&text, &names).map_err(refused)?;
         Ok(Self {
             card,
             functions: kernels.into_iter().zip(compiled).collect(),
+            widths,
         })
     }
 
@@ -83,6 +89,16 @@ impl OnCard {
             );
             return Err(Error::request(Field::Model, message));
         };
+        // Kernels count in 32 bits.
+        let entries = about
+            .results
+            .iter()
+            .map(|(_, shape)| shape.iter().product());
+        let widest = entries.chain(self.widths).max().unwrap_or(1);
+        if widest.saturating_mul(places.count) > MOST {
+            let message = format!("at most {} places are possible in one call", MOST / widest);
+            return Err(Error::request(Field::Device, message));
+        }
         let results = about.results.iter().map(|(_, shape)| {
             let count = shape.iter().product::<usize>() * places.count;
             self.card.zeros(count)

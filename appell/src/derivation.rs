@@ -143,11 +143,16 @@ impl Source {
         Ok(c::cuda(&self.program(&options.functions)?, options))
     }
 
-    /// The same, with the kernels in it.
+    /// The same, with the kernels in it, and the numbers of states and parameters.
     #[cfg(feature = "cuda")]
-    pub(crate) fn kernels(&self, options: &c::Options) -> Result<(String, Vec<c::Kernel>), Error> {
+    pub(crate) fn kernels(
+        &self,
+        options: &c::Options,
+    ) -> Result<(String, Vec<c::Kernel>, [usize; 2]), Error> {
         let program = self.program(&options.functions)?;
-        Ok((c::cuda(&program, options), c::kernels(&program, options)))
+        let widths = [program.info.state_len(), program.info.parameter_len()];
+        let kernels = c::kernels(&program, options);
+        Ok((c::cuda(&program, options), kernels, widths))
     }
 
     /// A module of Python functions over an array namespace: `numpy`, `jax.numpy`, `casadi` or `sympy`.

@@ -330,7 +330,7 @@ impl Ensemble {
         }
     }
 
-    /// Rows of cases, without a store.
+    /// Rows of cases, without a store; computed by processors.
     pub fn rows(&self, cases: Range<u64>) -> Rows {
         let room = usize::try_from(cases.end.saturating_sub(cases.start)).unwrap_or(0);
         let mut rows = Rows::new(cases.start, self.columns().len(), room);
@@ -338,7 +338,7 @@ impl Ensemble {
             go_on: &|| true,
             done: &|_| {},
         };
-        self.run(cases, &watch, &mut rows);
+        self.cases.run(cases, &watch, &mut rows);
         rows
     }
 
@@ -392,6 +392,10 @@ impl Ensemble {
     ) -> Result<Ended, Error> {
         let chunks = self.chunks(running.chunk)?;
         let jobs = running.threads()?;
+        #[cfg(feature = "cuda")]
+        if let Some(card) = &self.card {
+            card.start();
+        }
         #[cfg(feature = "cuda")]
         let go_on = || {
             (watch.go_on)()
@@ -524,7 +528,7 @@ fn source(reading: &mut Reading<'_>, name: &Text, folder: &Path) -> Result<Optio
 }
 
 /// Version of the computation and format of rows, to be changed with either.
-const ROWS: u32 = 2;
+const ROWS: u32 = 3;
 
 /// The parts of a study that determine its rows, as a text.
 fn meaning(study: &Study, design: &Design) -> String {

@@ -172,6 +172,33 @@ fn kept_numbers_of_a_case_are_those_of_its_motion() {
 }
 
 /// Bits of all rows.
+#[test]
+fn events_at_the_start_are_those_of_the_assembled_mechanism() {
+    // The spec guesses 1.8 rad for the rocker, which stands at 1.555 rad.
+    let study = r#"
+[study]
+model = "four_bar"
+cases = 2
+[motion]
+t_end_s = 0.01
+[vary]
+theta1 = { uniform = ["1rad", "1.001rad"] }
+[keep]
+high = { when = "theta3 > 1.7[rad]", stop = true }
+low = { when = "theta3 < 1.7[rad]" }
+"#;
+    let ensemble = Ensemble::parse("study.toml", study, Path::new(".")).unwrap();
+    let rows = ensemble.rows(0..2);
+    let named = |name: &str| {
+        let mut columns = ensemble.columns().iter();
+        &rows.values[columns.position(|column| column.name == name).unwrap()]
+    };
+    assert_eq!(named("high"), &[0.0, 0.0]);
+    assert_eq!(named("low"), &[1.0, 1.0]);
+    assert_eq!(named("low_t_s"), &[0.0, 0.0]);
+    assert_eq!(rows.ends, [0.01, 0.01]);
+}
+
 fn bits(ensemble: &Ensemble, store: &dyn Store) -> Vec<u64> {
     let mut bits = Vec::new();
     ensemble

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Lane changes with scattered parameters by `appell ensemble` and by heyoka, on one core each.
 
-    python3 run.py --appell PATH [--cases 20000] [--million]
+    python3 run.py --appell PATH [--before PATH] [--cases 20000] [--write] [--million]
 
-Prints a table; `--million` runs a million motions on all cores as well and tells time and memory.
+Prints a table; --before is an earlier program, --write puts the table between its markers in docs/performance.md, `--million`
+runs a million motions on all cores as well and tells time and memory.
 """
 
 import argparse
@@ -28,6 +29,7 @@ ROWS = [("dop853", tolerance) for tolerance in ("1e-6", "1e-7", "3e-8", "1e-8", 
 MILLION = ("dop853", "3e-8")
 # Cases whose errors are looked at.
 SAMPLE = 512
+BEGIN, END = "<!-- ensembles: written by benches/ensembles/run.py -->", "<!-- end ensembles -->"
 
 
 def study(folder, cases, method, tolerance):
@@ -55,28 +57,47 @@ def run(appell, folder, cases, method, tolerance, jobs):
     return {name: values[order] for name, values in rows.items()}, seconds[cases] - seconds[1]
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--appell", required=True)
-    parser.add_argument("--cases", type=int, default=20000)
-    parser.add_argument("--million", action="store_true")
-    asked = parser.parse_args()
-    print("| | tolerance | us a motion, one core | largest error |\n|---|---|---|---|")
+def table(appell, before, cases):
+    """Rows of the table: earlier program, this one, the peer, one after the other."""
+    lines = ["| | tolerance | µs a motion, one core | largest error |", "|---|---|---|---|"]
+    programs = {"appell before": before, "appell": appell} if before else {"appell": appell}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        exact, _ = run(asked.appell, folder, SAMPLE, "dop853", "1e-13", 1)
+        exact, _ = run(appell, folder, SAMPLE, "dop853", "1e-13", 1)
         for method, tolerance in ROWS:
-            rows, seconds = run(asked.appell, folder, asked.cases, method, tolerance, 1)
-            error = max(abs(rows[name][:SAMPLE] - exact[name]).max() for name in KEPT)
-            print(f"| appell ensemble, {method} | {tolerance} | {seconds / asked.cases * 1e6:.1f} | {error:.1e} |", flush=True)
+            for name, program in programs.items():
+                with tempfile.TemporaryDirectory() as own:
+                    rows, seconds = run(program, Path(own), cases, method, tolerance, 1)
+                error = max(abs(rows[kept][:SAMPLE] - exact[kept]).max() for kept in KEPT)
+                lines.append(f"| {name}, {method} | {tolerance} | {seconds / cases * 1e6:.1f} | {error:.1e} |")
+                print(lines[-1], flush=True)
         told = subprocess.run(["taskset", "-c", "0", sys.executable, HERE / "with_heyoka.py", "4000"], check=True,
                               capture_output=True, text=True)
         told = json.loads(told.stdout)
         for kind, name in (("batch", f"heyoka {told['heyoka']}, batches of {told['lanes']}"), ("one", "heyoka, one motion")):
             for row in told[kind]:
-                print(f"| {name} | {row['tolerance']:.0e} | {row['seconds'] * 1e6:.1f} | {row['error']:.1e} |")
-        if asked.million:
-            _, seconds = run(asked.appell, folder, 1000000, *MILLION, 0)
+                lines.append(f"| {name} | {row['tolerance']:.0e} | {row['seconds'] * 1e6:.1f} | {row['error']:.1e} |")
+                print(lines[-1], flush=True)
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--appell", required=True)
+    parser.add_argument("--before")
+    parser.add_argument("--cases", type=int, default=20000)
+    parser.add_argument("--million", action="store_true")
+    parser.add_argument("--write", action="store_true")
+    asked = parser.parse_args()
+    lines = table(asked.appell, asked.before, asked.cases)
+    if asked.write:
+        page = HERE.parent.parent / "docs/performance.md"
+        text = page.read_text()
+        begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
+        page.write_text(text[:begin] + "\n\n" + "\n".join(lines) + "\n\n" + text[end:])
+    if asked.million:
+        with tempfile.TemporaryDirectory() as folder:
+            _, seconds = run(asked.appell, Path(folder), 1000000, *MILLION, 0)
             peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
             print(f"\nA million motions on {os.cpu_count()} cores: {seconds:.1f} s, at most {peak:.0f} MB.")
 

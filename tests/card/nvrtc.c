@@ -77,6 +77,14 @@ Result nvrtcGetPTX(Program *program, char *text) {
     return SUCCESS;
 }
 
+Result nvrtcGetCUBINSize(Program *program, size_t *size) {
+    return nvrtcGetPTXSize(program, size);
+}
+
+Result nvrtcGetCUBIN(Program *program, char *code) {
+    return nvrtcGetPTX(program, code);
+}
+
 Result nvrtcGetProgramLogSize(Program *program, size_t *size) {
     (void)program;
     *size = sizeof "the C compiler refuses the source";

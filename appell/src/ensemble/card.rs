@@ -23,6 +23,8 @@ pub(super) const TOGETHER: u64 = 1 << 18;
 const NUMBERS: usize = 1 << 27;
 /// Cases of a call that is not divided if it does not fit into the memory of the card.
 const FEW: usize = 64;
+/// Cases of a call on a card that ends long kernels.
+const BRIEF: u64 = 4096;
 
 /// The kernels of a study, one for each spec and law.
 pub(super) struct OnCard {
@@ -30,6 +32,10 @@ pub(super) struct OnCard {
     /// Times at which quantities are recorded, each with the index of the quantity and its column.
     moment_times: Vec<f64>,
     moment_places: Vec<i32>,
+    /// Cases of a call.
+    together: u64,
+    /// Held during a call: its arrays are the only ones on the card.
+    calling: Mutex<()>,
     /// Why a call failed.
     failure: Mutex<Option<CardError>>,
 }
@@ -81,6 +87,12 @@ impl OnCard {
             kernels,
             moment_times: task.layout.moments.iter().map(|moment| moment.t).collect(),
             moment_places: places.collect(),
+            together: if card.has_time_limit().map_err(refused)? {
+                BRIEF
+            } else {
+                TOGETHER
+            },
+            calling: Mutex::default(),
             failure: Mutex::default(),
         })
     }
@@ -91,9 +103,16 @@ impl OnCard {
         failure.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
+    /// Forgets an earlier failure.
+    pub(super) fn start(&self) {
+        *self.failure.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+
     /// Appends the rows of consecutive cases, in their order; none after a failure.
     pub(super) fn run(&self, study: &Cases, cases: Range<u64>, watch: &Watch<'_>, rows: &mut Rows) {
-        let together = TOGETHER.min((NUMBERS / numbers_of_a_motion(study)).max(1) as u64);
+        let together = self
+            .together
+            .min((NUMBERS / numbers_of_a_motion(study)).max(1) as u64);
         let mut next = cases.start;
         while next < cases.end && (watch.go_on)() && self.failure().is_none() {
             let some = next..cases.end.min(next + together);
@@ -104,10 +123,8 @@ impl OnCard {
                 self.kernels.iter().zip(&study.variants).zip(rides)
             {
                 if let Err(error) = self.ride(study, kernel, variant, &mut rides) {
-                    let mut failure = self.failure.lock();
-                    **failure
-                        .as_mut()
-                        .unwrap_or_else(|poisoned| poisoned.get_mut()) = Some(error);
+                    let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+                    *failure = Some(error);
                     return;
                 }
             }
@@ -117,7 +134,7 @@ impl OnCard {
         }
     }
 
-    /// Runs motions under one spec and law; in parts if they do not fit into the memory of the card.
+    /// Runs motions under one spec and law, in parts whose arrays are bounded.
     fn ride(
         &self,
         study: &Cases,
@@ -127,21 +144,36 @@ impl OnCard {
     ) -> Result<(), CardError> {
         let (mut motions, mut started) = (Motions::default(), Vec::new());
         let shared = SharedTimes::default();
-        for (index, ride) in rides.iter_mut().enumerate() {
-            match motions.add(study, variant, ride, &shared) {
+        for index in 0..rides.len() {
+            match motions.add(study, variant, &rides[index], &shared) {
                 Ok(()) => started.push(index),
-                Err(reason) => ride.row.fail(reason),
+                Err(reason) => rides[index].row.fail(reason),
+            }
+            if motions.changes.len() + motions.paces.len() > NUMBERS {
+                self.finish(study, kernel, variant, rides, (&motions, &started))?;
+                (motions, started) = (Motions::default(), Vec::new());
             }
         }
-        let ended = match self.call(study, kernel, &motions) {
-            Err(CardError::Memory) if rides.len() > FEW => {
-                drop(motions);
-                let (first, second) = rides.split_at_mut(rides.len() / 2);
-                self.ride(study, kernel, variant, first)?;
-                return self.ride(study, kernel, variant, second);
-            }
-            ended => ended?,
-        };
+        let ended = self.finish(study, kernel, variant, rides, (&motions, &started));
+        if matches!(ended, Err(CardError::Memory)) && rides.len() > FEW {
+            drop(motions);
+            let (first, second) = rides.split_at_mut(rides.len() / 2);
+            self.ride(study, kernel, variant, first)?;
+            return self.ride(study, kernel, variant, second);
+        }
+        ended
+    }
+
+    /// Calls the kernel for motions, given with the indices of their rides, and writes their rows.
+    fn finish(
+        &self,
+        study: &Cases,
+        kernel: &Kernel,
+        variant: &Variant,
+        rides: &mut [Ride<'_>],
+        (motions, started): (&Motions, &[usize]),
+    ) -> Result<(), CardError> {
+        let ended = self.call(study, kernel, motions)?;
         let factors = study.factors();
         for (motion, &index) in started.iter().enumerate() {
             let row = &mut *rides[index].row;
@@ -164,6 +196,7 @@ impl OnCard {
             endings: vec![0; count],
         };
         let noises = motions.noise.len() / count.max(1);
+        let _only = self.calling.lock().unwrap_or_else(PoisonError::into_inner);
         kernel.call(
             count,
             &mut [
@@ -199,7 +232,7 @@ impl Motions {
         let source = study.source(variant, ride);
         let inputs = ModelInputs::new(model.info(), &source);
         let inputs = inputs.map_err(|error| told(&error.into(), variant))?;
-        let simulation = study.simulation(variant, &ride.start, &source, false);
+        let simulation = study.simulation(variant, &ride.start, &source);
         let prepared = Prepared::new(&simulation, &inputs);
         let prepared = prepared.map_err(|error| told(&error, variant))?;
         let table = prepared.timetable(shared);

@@ -175,14 +175,13 @@ impl Cases {
         variant: &'v Variant,
         start: &Start,
         inputs: &'v Noisy<'v>,
-        is_over: bool,
     ) -> Simulation<'v> {
         let motion = &self.study.motion;
         Simulation {
             parameters: start.parameters.clone(),
             initial_state: start.initial.clone(),
             inputs,
-            span: [0.0, if is_over { 0.0 } else { motion.t_end }],
+            span: [0.0, motion.t_end],
             validity: Validity {
                 ranges: if motion.ignore_ranges {
                     Response::Ignore

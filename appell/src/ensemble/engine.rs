@@ -115,20 +115,22 @@ impl Cases {
                 RefCell::new(Gauge::new(model, inputs, source, &start.parameters, &kept))
             })
             .collect();
-        let (mut awaited, mut simulations) = (Vec::new(), Vec::new());
-        for (((start, row), gauge), source) in
-            starts.iter().zip(&mut rows).zip(&gauges).zip(&sources)
-        {
-            let events = Awaited::new(task, gauge, &start.initial, &mut row.values);
-            simulations.push(self.simulation(variant, start, source, events.is_over));
-            awaited.push(events);
-        }
-        // Motions with initial conditions, and their indices.
-        let (mut prepared, mut which) = (Vec::new(), Vec::new());
+        let simulations = starts.iter().zip(&sources);
+        let simulations: Vec<_> = simulations
+            .map(|(start, source)| self.simulation(variant, start, source))
+            .collect();
+        // Motions with initial conditions, their events, and their indices.
+        let (mut prepared, mut awaited, mut which) = (Vec::new(), Vec::new(), Vec::new());
         for (place, (simulation, inputs)) in simulations.iter().zip(&inputs).enumerate() {
             match Prepared::new(simulation, inputs) {
-                Ok(start) => {
+                Ok(mut start) => {
+                    let values = &mut rows[place].values;
+                    let events = Awaited::new(task, &gauges[place], start.start(), values);
+                    if events.is_over {
+                        start.end_at_start();
+                    }
                     prepared.push(start);
+                    awaited.push(events);
                     which.push(place);
                 }
                 Err(error) => rows[place].fail(told(&error, variant)),
@@ -138,26 +140,25 @@ impl Cases {
             .iter_mut()
             .map(|row| Some(row.values.as_mut_slice()))
             .collect();
-        let viewers = prepared
-            .iter()
-            .zip(&which)
-            .filter_map(|(prepared, &place)| {
+        let viewers = prepared.iter().zip(awaited.iter().zip(&which)).filter_map(
+            |(prepared, (awaited, &place))| {
                 let gauge = &gauges[place];
                 let (t, x) = (prepared.span()[0], prepared.start());
                 let row = values[place].take()?;
                 Some(Viewer {
-                    events: awaited[place].events(task, gauge),
+                    events: awaited.events(task, gauge),
                     observer: Keeper::new(gauge, &task.keep, &task.layout, row, t, x, go_on),
                 })
-            });
+            },
+        );
         let viewers = viewers.collect();
         let sources: Vec<&Noisy<'_>> = which.iter().map(|&place| &sources[place]).collect();
         let ended = self.observe(solvers, &variant.closed, &sources, &prepared, viewers);
         let mut ends = Vec::new();
-        for (ended, place) in ended.into_iter().zip(which) {
+        for (ended, (awaited, place)) in ended.into_iter().zip(awaited.iter().zip(which)) {
             let end = ended.map(|(observed, keeper)| {
                 let values = keeper.finish(&task.layout, observed.t);
-                awaited[place].happened(&observed, values);
+                awaited.happened(&observed, values);
                 let reason = reason(&observed, model.info());
                 if reason.is_empty() {
                     let mut gauge = gauges[place].borrow_mut();

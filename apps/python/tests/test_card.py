@@ -37,6 +37,7 @@ least = { min = "omega*omega - theta*1[1/s^2]" }
 mean = { mean = "abs(theta)" }
 over = { when = "theta > 30[deg]" }
 fast = { when = "omega > 5[1/s]", stop = true }
+also = { when = "omega > 5[1/s]" }
 path = { course = "theta" }
 """
 SWITCHED = SWITCHED.replace("SWITCHED", "if(theta > a, 0.3[N*m], -0.2[N*m])*if(abs(omega) > 1[1/s], 1, 0.5)")
@@ -103,6 +104,7 @@ torque = { uniform = [0, 2], unit = "N*m" }
 [keep]
 end = { end = "theta3" }
 mean = { mean = "theta2" }
+high = { when = "theta3 > 1.7[rad]" }
 """
 SPECS = """
 [study]

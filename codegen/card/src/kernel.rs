@@ -10,7 +10,7 @@ use cudarc::driver::{
     PushKernelArg as _,
 };
 
-use crate::CardError;
+use crate::error::CardError;
 
 /// Threads of a block: few, since a motion needs many registers.
 const THREADS: u32 = 64;
@@ -35,8 +35,15 @@ pub enum Argument<'a> {
 }
 
 /// Numbers in the memory of a card.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Memory(pub(crate) CudaSlice<f64>);
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        // It may be freed by a thread that has not used the card. If this fails, so does freeing.
+        let _ = self.0.stream().context().bind_to_thread();
+    }
+}
 
 impl Memory {
     /// Their address.
@@ -46,7 +53,9 @@ impl Memory {
 
     /// A copy.
     pub fn read(&self) -> Result<Vec<f64>, CardError> {
-        Ok(self.0.stream().clone_dtoh(&self.0)?)
+        let numbers = self.0.stream().clone_dtoh(&self.0)?;
+        self.0.stream().synchronize()?;
+        Ok(numbers)
     }
 }
 

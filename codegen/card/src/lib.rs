@@ -1,72 +1,17 @@
 //! Kernels on a graphics card: sources in CUDA C++ are compiled in the process (NVRTC), as `jit` compiles for the
 //! processor. The libraries of the driver and of the compiler are loaded when a card is first asked for.
 
+mod compiler;
+mod error;
 mod kernel;
 
 use std::sync::Arc;
 
-use cudarc::driver::sys::CUresult;
-use cudarc::driver::{CudaContext, CudaStream, DriverError};
-use cudarc::nvrtc::{CompileError, CompileOptions, compile_ptx_with_opts};
+use cudarc::driver::sys::CUdevice_attribute;
+use cudarc::driver::{CudaContext, CudaStream};
 
+pub use error::CardError;
 pub use kernel::{Argument, Kernel, Memory};
-
-/// Why there is no card, or why it computes nothing.
-#[derive(Debug, Clone, thiserror::Error)]
-pub enum CardError {
-    /// A library cannot be loaded.
-    #[error(
-        "there is no {what} (`{library}`): install {package}, or name its folder in `LD_LIBRARY_PATH`"
-    )]
-    Missing {
-        /// What it is.
-        what: &'static str,
-        /// The name of its file.
-        library: &'static str,
-        /// The package that has it.
-        package: &'static str,
-    },
-    /// Its memory is too small.
-    #[error("the memory of the graphics card is too small")]
-    Memory,
-    /// The driver refuses.
-    #[error("the graphics card cannot be used: {0}")]
-    Driver(String),
-    /// The compiler refuses a source.
-    #[error("the equations cannot be compiled for the graphics card: {0}")]
-    Compiler(String),
-    /// More places than one call takes.
-    #[error("a call of a kernel takes at most {most} places, not {places}")]
-    TooMany {
-        /// The requested ones.
-        places: usize,
-        /// The most.
-        most: usize,
-    },
-}
-
-impl From<DriverError> for CardError {
-    fn from(error: DriverError) -> Self {
-        if error.0 == CUresult::CUDA_ERROR_OUT_OF_MEMORY {
-            return Self::Memory;
-        }
-        let name = error
-            .error_string()
-            .map(|text| text.to_string_lossy().into_owned());
-        Self::Driver(name.unwrap_or_else(|_| format!("{error:?}")))
-    }
-}
-
-impl From<CompileError> for CardError {
-    fn from(error: CompileError) -> Self {
-        match error {
-            CompileError::CompileError { log, .. } => {
-                Self::Compiler(log.to_string_lossy().trim().to_owned())
-            }
-            other => Self::Compiler(other.to_string()),
-        }
-    }
-}
 
 /// A graphics card.
 #[derive(Debug, Clone)]
@@ -89,6 +34,12 @@ impl Card {
         Ok(self.context.name()?)
     }
 
+    /// Whether it also shows a screen, and ends kernels that take longer than some seconds.
+    pub fn has_time_limit(&self) -> Result<bool, CardError> {
+        let limit = CUdevice_attribute::CU_DEVICE_ATTRIBUTE_KERNEL_EXEC_TIMEOUT;
+        Ok(self.context.attribute(limit)? != 0)
+    }
+
     /// Numbers in its memory, zero at first; at least one.
     pub fn zeros(&self, count: usize) -> Result<Memory, CardError> {
         Ok(Memory(self.stream.alloc_zeros(count.max(1))?))
@@ -99,24 +50,15 @@ impl Card {
         if numbers.is_empty() {
             return self.zeros(1);
         }
-        Ok(Memory(self.stream.clone_htod(numbers)?))
+        let copied = Memory(self.stream.clone_htod(numbers)?);
+        self.stream.synchronize()?;
+        Ok(copied)
     }
 
     /// Compiles a source; `names` are those of kernels in it.
     pub fn compile(&self, source: &str, names: &[&str]) -> Result<Vec<Kernel>, CardError> {
         let (major, minor) = self.context.compute_capability()?;
-        let compile = |options| {
-            compile_ptx_with_opts(
-                source,
-                CompileOptions {
-                    options,
-                    ..CompileOptions::default()
-                },
-            )
-        };
-        // A compiler older than the card does not know it; the driver translates what it writes for others.
-        let ptx = compile(vec![format!("-arch=compute_{major}{minor}")]);
-        let ptx = ptx.or_else(|_| compile(Vec::new()))?;
+        let ptx = compiler::compiled(source, [major, minor])?;
         let module = self.context.load_module(ptx)?;
         let kernels = names.iter().map(|name| {
             let function = module.load_function(name)?;

@@ -1018,6 +1018,7 @@ motion_FUNCTION void one_case(int n, int i, const double *p, const double *start
             }
             if (EVENTS > 0) {
                 double stop = left, end;
+                int ender = EVENTS;
                 for (j = 0; j < EVENTS; j++) {
                     m.hits[j] = INFINITY;
                 }
@@ -1028,9 +1029,14 @@ motion_FUNCTION void one_case(int n, int i, const double *p, const double *start
                     point(&m, j, end, m.to, values[j]);
                     stop = event_stops[j] ? at_most(stop, m.hits[j]) : stop;
                 }
+                /* Of events at one time those after the one that ends the motion do not happen. */
+                for (j = EVENTS - 1; j >= 0; j--) {
+                    ender = event_stops[j] && m.hits[j] == stop ? j : ender;
+                }
                 for (j = 0; j < EVENTS; j++) {
                     double *happened = &rows[event_column[j] * n + i];
-                    if (m.hits[j] <= stop && IS_FINITE(m.hits[j]) && *happened == 0) {
+                    int is_hit = m.hits[j] < stop || (m.hits[j] == stop && j <= ender);
+                    if (is_hit && IS_FINITE(m.hits[j]) && *happened == 0) {
                         *happened = 1;
                         rows[(event_column[j] + 1) * n + i] = m.hits[j];
                         is_over += event_stops[j] && m.hits[j] == stop;
@@ -1097,7 +1103,7 @@ motion_KERNEL void motion_cases(int n, int noises_each, int moments, const doubl
                                 int *endings) {
     for (motion_EACH(i, n)) {
         const int *place = place_of + 4 * i;
-        one_case(n, i, p, start, noise + (long long)i * noises_each, times + place[0], place[1], pace + 2 * place[2],
+        one_case(n, i, p, start, noise + (long long)i * noises_each, times + place[0], place[1], pace + 2 * (long long)place[2],
                  place[3], moments, moment_times, moment_places, rows, ends, endings);
     }
 }

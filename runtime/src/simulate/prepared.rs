@@ -87,6 +87,11 @@ impl<'a> Prepared<'a> {
         self.span
     }
 
+    /// Ends it where it starts.
+    pub fn end_at_start(&mut self) {
+        self.span[1] = self.span[0];
+    }
+
     /// What is known of its steps before it starts; nothing if the rates change more than a million times. Motions of one
     /// model with the same functions of time share it.
     pub fn timetable(&self, shared: &SharedTimes) -> Option<Timetable> {

@@ -109,7 +109,8 @@ class _Borrowed:
     """An array of another library in the memory of the card, until the end of a call."""
 
     def __init__(self, array: Any):
-        self._capsule = array.__dlpack__()
+        # Kernels run in the default stream, which this array is to be ready for.
+        self._capsule = array.__dlpack__(stream=1)
         self._tensor = _Tensor.from_address(_python.PyCapsule_GetPointer(self._capsule, _GIVEN))
         _python.PyCapsule_SetName(self._capsule, _TAKEN)
         tensor = self._tensor
@@ -184,7 +185,10 @@ class OnCard:
 
     def _placed(self, name: str, value: Any, width: int, count: int | None = None, one: bool = False) -> Any:
         """An array on the card: a borrowed one, or a copy."""
-        is_there = hasattr(value, "__dlpack_device__") and value.__dlpack_device__()[0] == CUDA
+        device = value.__dlpack_device__() if hasattr(value, "__dlpack_device__") else (CPU, 0)
+        is_there = device[0] == CUDA
+        if is_there and device[1] != 0:
+            raise ValueError(f"{name} is on card {device[1]}; kernels run on the first one, card 0")
         array = _Borrowed(value) if is_there else np.asarray(value, float)
         shape = array.shape
         rows = "N" if count is None else count

@@ -134,8 +134,26 @@ impl OnCard {
         }
     }
 
-    /// Runs motions under one spec and law, in parts whose arrays are bounded.
+    /// Runs motions under one spec and law; in halves if they do not fit into the memory of the card.
     fn ride(
+        &self,
+        study: &Cases,
+        kernel: &Kernel,
+        variant: &Variant,
+        rides: &mut [Ride<'_>],
+    ) -> Result<(), CardError> {
+        match self.in_parts(study, kernel, variant, rides) {
+            Err(CardError::Memory) if rides.len() > FEW => {
+                let (first, second) = rides.split_at_mut(rides.len() / 2);
+                self.ride(study, kernel, variant, first)?;
+                self.ride(study, kernel, variant, second)
+            }
+            ended => ended,
+        }
+    }
+
+    /// Runs motions in parts whose lists of times are bounded.
+    fn in_parts(
         &self,
         study: &Cases,
         kernel: &Kernel,
@@ -154,14 +172,7 @@ impl OnCard {
                 (motions, started) = (Motions::default(), Vec::new());
             }
         }
-        let ended = self.finish(study, kernel, variant, rides, (&motions, &started));
-        if matches!(ended, Err(CardError::Memory)) && rides.len() > FEW {
-            drop(motions);
-            let (first, second) = rides.split_at_mut(rides.len() / 2);
-            self.ride(study, kernel, variant, first)?;
-            return self.ride(study, kernel, variant, second);
-        }
-        ended
+        self.finish(study, kernel, variant, rides, (&motions, &started))
     }
 
     /// Calls the kernel for motions, given with the indices of their rides, and writes their rows.

@@ -181,7 +181,7 @@ def test_cases_that_do_not_fit_into_memory_come_in_parts(card, tmp_path):
 def test_motions_compile_for_graphics_cards(name):
     study = appell.Ensemble(STUDIES[name], folder=HERE / "docs/examples/feedback")
     for source in study.cuda():
-        assert ".visible .entry motion_cases(" in ptx(source)
+        assert ".visible .entry motion_cases(" in ptx(source, (b"--gpu-architecture=compute_80",))
 
 
 def test_what_a_card_cannot_compute_is_said(tmp_path):

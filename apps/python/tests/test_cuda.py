@@ -76,12 +76,11 @@ def test_kernels_compile_for_graphics_cards(model, name, single):
         assert f".visible .entry {name}_{kernel}(" in text
 
 
-def ptx(source):
+def ptx(source, options=(b"--gpu-architecture=compute_80", b"--fmad=false")):
     """What NVRTC makes of a source, without a word."""
     nvrtc = compiler()
     program = ctypes.c_void_p()
     assert nvrtc.nvrtcCreateProgram(ctypes.byref(program), source.encode(), b"model.cu", 0, None, None) == 0
-    options = [b"--gpu-architecture=compute_80", b"--fmad=false"]
     failed = nvrtc.nvrtcCompileProgram(program, len(options), (ctypes.c_char_p * len(options))(*options))
     said = told(nvrtc.nvrtcGetProgramLogSize, nvrtc.nvrtcGetProgramLog, program).strip()
     assert not failed and not said, said

@@ -70,10 +70,12 @@ class CardArray:
 
     dtype = np.dtype(np.float64)
 
-    def __init__(self, memory: Any, shape: Sequence[int], strides: Sequence[int]):
+    def __init__(self, memory: Any, shape: Sequence[int]):
         self._memory = memory
-        self.shape, self.strides = tuple(shape), tuple(strides)
-        """Entries from one to the next along each axis."""
+        self.shape = tuple(shape)
+        inner = [self.shape[0] * int(np.prod(self.shape[axis + 1 :])) for axis in range(1, len(self.shape))]
+        self.strides = (1, *inner)
+        """Entries from one to the next along each axis: places are next to each other."""
 
     def numpy(self) -> np.ndarray:
         """A copy for the processor."""
@@ -146,9 +148,7 @@ class OnCard:
     def array(self, values: Any) -> CardArray:
         """A copy of an array of the processor, (N, n), on the card."""
         values = np.asarray(values, float)
-        count = values.shape[0]
-        inner = [count * int(np.prod(values.shape[axis + 1 :])) for axis in range(1, values.ndim)]
-        return CardArray(self._native.copy(_by_quantity(values)), values.shape, (1, *inner))
+        return CardArray(self._native.copy(_by_quantity(values)), values.shape)
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._functions]
@@ -179,8 +179,7 @@ class OnCard:
         found = self._native.call(name, count, float(t or 0.0), p.address, each, x.address, u.address, address)
         arrays = {}
         for (result, shape), memory in zip(results, found, strict=True):
-            inner = [count * int(np.prod(shape[axis + 1 :])) for axis in range(len(shape))]
-            arrays[result] = CardArray(memory, (count, *shape), (1, *inner))
+            arrays[result] = CardArray(memory, (count, *shape))
         return types.SimpleNamespace(**arrays) if len(arrays) > 1 else next(iter(arrays.values()))
 
     def _placed(self, name: str, value: Any, width: int, count: int | None = None, one: bool = False) -> Any:

@@ -161,7 +161,8 @@ fn which(
     let best = comparison.best();
     let unresolved = best.members.iter();
     let unresolved = unresolved.filter_map(|&late| of_unresolved_lag(bench, best, &which[0], late));
-    let unresolved: Vec<Hypothesis> = unresolved.collect();
+    let is_new = |own: &Hypothesis| which.iter().all(|other| other.effects != own.effects);
+    let unresolved: Vec<Hypothesis> = unresolved.filter(is_new).collect();
     which.extend(unresolved);
     which.push(Hypothesis::unknown(comparison.unknown));
     Ok(which)
@@ -175,13 +176,12 @@ fn of_unresolved_lag(
     late: usize,
 ) -> Option<Hypothesis> {
     let delay = bench.candidate(late);
-    let acts = match delay.acts {
-        Acts::Delay(input) => Acts::Lag(input),
-        Acts::Late(channel) => Acts::Slow(channel),
-        _ => return None,
+    // A channel that lags and one that is late are variants of one effect.
+    let Acts::Delay(input) = delay.acts else {
+        return None;
     };
     let mut candidates = bench.effects.candidates.iter();
-    let lag = candidates.position(|own| own.acts == acts && !own.is_of_group())?;
+    let lag = candidates.position(|own| own.acts == Acts::Lag(input) && !own.is_of_group())?;
     let own = named(delay, "delay");
     let place = first.parameters.iter().position(|one| one.name == own)?;
     if !bench.is_too_short(lag, &[first.parameters[place].value]) {

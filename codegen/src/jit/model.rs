@@ -1,6 +1,5 @@
 //! Programs compiled to machine code.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use appell_runtime::model::At;
@@ -38,36 +37,31 @@ pub struct Jit {
 #[derive(Debug)]
 struct Whole {
     model: Arc<JitModel>,
-    /// The parameters that are zero in the specialised model.
-    zeros: Vec<usize>,
-    /// The same as ranges: every call compares all of them.
-    ranges: Vec<Range<usize>>,
+    /// For each parameter, whether it is zero in the specialised model: all bits set. Every call compares all of them.
+    zeros: Vec<u64>,
 }
 
 impl Whole {
-    fn of(model: &Arc<JitModel>, mut zeros: Vec<usize>) -> Self {
-        zeros.sort_unstable();
-        let runs = zeros.chunk_by(|one, next| one + 1 == *next);
-        let ranges = runs.map(|run| run[0]..run[0] + run.len()).collect();
+    fn of(model: &Arc<JitModel>, zeros: &[usize]) -> Self {
+        let mut masks = vec![0; model.engine.sizes.parameters];
+        for &parameter in zeros {
+            masks[parameter] = u64::MAX;
+        }
         Self {
             model: model.clone(),
-            zeros,
-            ranges,
+            zeros: masks,
         }
     }
 
     fn is_needed(&self, p: &[f64]) -> bool {
-        let others = |range: &Range<usize>| -> usize {
-            let values = p[range.clone()].iter();
-            // Without a branch for each parameter.
-            values.map(|value| usize::from(*value != 0.0)).sum()
-        };
-        self.ranges.iter().any(|range| others(range) > 0)
+        // Without a branch for each parameter; the sign of a zero is shifted out.
+        let others = p.iter().zip(&self.zeros);
+        others.fold(0, |bits, (value, zero)| bits | value.to_bits() << 1 & zero) != 0
     }
 
     /// The tape of a function of the specialised model.
     fn tape(&self, kind: FunctionKind, tape: &Tape) -> Tape {
-        let is_zero = |index: usize| self.zeros.binary_search(&index).is_ok();
+        let is_zero = |index: usize| self.zeros[index] != 0;
         let mut tape = tape.clone();
         let parameters = self.model.engine.sizes.parameters.max(1);
         let by_parameters = matches!(
@@ -114,7 +108,7 @@ impl ProgramModel<Jit> {
         let engine = Jit {
             sizes: self.engine.sizes,
             parts: [const { OnDemand::new(Use::Brief) }; FunctionKind::COUNT],
-            whole: Some(Whole::of(self, zeros.to_vec())),
+            whole: Some(Whole::of(self, zeros)),
         };
         Self::of(self.tapes.clone(), engine)
     }

@@ -1,5 +1,7 @@
 //! Products of small matrices, stored row by row.
 
+use std::slice::ChunksExact;
+
 use nalgebra::{DMatrixView, DMatrixViewMut, Dyn, Matrix, Storage};
 
 /// Number of products of numbers from which the packing of a blocked product is worth its time.
@@ -11,14 +13,56 @@ pub(super) fn multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     if a.len() * columns >= LARGE {
         return add_product(&turned(b, columns), &turned(a, inner), c);
     }
+    let rows = b.chunks_exact(columns);
     for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
-        for (&factor, b) in a.iter().zip(b.chunks_exact(columns)) {
-            // Most gradients of coordinates and outputs have one or two nonzero entries.
-            if factor != 0.0 {
-                add_scaled(factor, b, c);
+        add_row(a.iter(), &rows, c);
+    }
+}
+
+/// `c += a b` for a row `c` and the rows of `b`, by pieces that stay in registers.
+fn add_row<'a>(a: impl Iterator<Item = &'a f64> + Clone, b: &ChunksExact<'_, f64>, c: &mut [f64]) {
+    let columns = c.len();
+    let mut first = 0;
+    while first + 8 <= columns {
+        add_piece::<8>(a.clone(), b, first, c);
+        first += 8;
+    }
+    if first + 4 <= columns {
+        add_piece::<4>(a.clone(), b, first, c);
+        first += 4;
+    }
+    if first + 2 <= columns {
+        add_piece::<2>(a.clone(), b, first, c);
+        first += 2;
+    }
+    if first < columns {
+        add_piece::<1>(a, b, first, c);
+    }
+}
+
+/// The same for some of its columns.
+#[inline]
+fn add_piece<'a, const WIDTH: usize>(
+    a: impl Iterator<Item = &'a f64>,
+    b: &ChunksExact<'_, f64>,
+    first: usize,
+    c: &mut [f64],
+) {
+    let Some(c) = c[first..].first_chunk_mut::<WIDTH>() else {
+        return;
+    };
+    let mut sums = *c;
+    for (&factor, b) in a.zip(b.clone()) {
+        // Most gradients of coordinates and outputs have one or two nonzero entries.
+        if factor != 0.0
+            && let Some(b) = b[first..].first_chunk::<WIDTH>()
+        {
+            for (sum, b) in sums.iter_mut().zip(b) {
+                *sum += factor * b;
             }
         }
     }
+    *c = sums;
 }
 
 /// `c = a b`
@@ -34,12 +78,10 @@ pub(super) fn transposed_multiply(a: &[f64], b: &[f64], inner: usize, c: &mut [f
     if a.len() * columns >= LARGE {
         return add_product(&turned(b, columns), &turned(a, rows).transpose(), c);
     }
-    for (a, b) in a.chunks_exact(rows).zip(b.chunks_exact(columns)) {
-        for (&factor, c) in a.iter().zip(c.chunks_exact_mut(columns)) {
-            if factor != 0.0 {
-                add_scaled(factor, b, c);
-            }
-        }
+    let of_b = b.chunks_exact(columns);
+    let of_a = a.chunks_exact(rows);
+    for (row, c) in c.chunks_exact_mut(columns).enumerate() {
+        add_row(of_a.clone().map(|a| &a[row]), &of_b, c);
     }
 }
 
@@ -49,8 +91,9 @@ pub(super) fn multiply_transposed_add(a: &[f64], b: &[f64], inner: usize, c: &mu
     if a.len() * columns >= LARGE {
         return add_product(&turned(b, inner).transpose(), &turned(a, inner), c);
     }
+    let rows = b.chunks_exact(inner);
     for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
-        for (b, c) in b.chunks_exact(inner).zip(c) {
+        for (b, c) in rows.clone().zip(c) {
             *c += dot(a, b);
         }
     }

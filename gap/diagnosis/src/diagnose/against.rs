@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Two sets of recordings never show exactly the same rig. A difference is therefore a change only if its explanation
-//! improves the prediction of held-out runs, by more than the usual variation between runs of one rig.
+//! significantly improves the prediction of held-out runs, and if these were predicted less well than the earlier ones.
 
 use appell_estimate::chi_squared_quantile;
 use appell_recordings::{Channel, DataSet, Parameter, Part, Spec};
@@ -24,7 +24,7 @@ use super::{
     diagnosed,
 };
 
-/// Smallest relative reduction of the mean square prediction error by a change.
+/// Smallest part of the mean square prediction error that was not there on the earlier recordings.
 const CHANGED: f64 = 0.1;
 /// Significance level of a difference of re-fitted parameters from their earlier estimates.
 const LEVEL: f64 = 1e-3;
@@ -178,16 +178,16 @@ fn widened(parameter: &Estimate, factor: f64) -> f64 {
     (known + told / factor).sqrt().recip()
 }
 
-/// Whether the explanation of a difference improves predictions significantly and by enough. Parameters within the
-/// uncertainty of their earlier estimates do not count, nor do errors that occur on the earlier recordings too.
+/// Whether the explanation of a difference improves predictions significantly, and their error was smaller on the earlier
+/// recordings. Parameters within the uncertainty of their earlier estimates do not count.
 fn matters(report: &Report, set: &DataSet, told: &Told) -> bool {
     let far = report.how_far.as_ref();
     far.is_none_or(|far| {
         let bases = [far.nominal, far.refitted];
         let base = usize::from(is_open(report, set, told) && far.refitted < far.nominal);
-        let left = far.with_effect.max(far.before.unwrap_or(0.0));
-        let bettered = 1.0 - (left / bases[base]).powi(2);
-        far.bettered_ci95[base][0] > 0.0 && bettered > CHANGED
+        let before = far.before.unwrap_or(far.with_effect);
+        let new = 1.0 - (before / bases[base]).powi(2);
+        far.bettered_ci95[base][0] > 0.0 && new > CHANGED
     })
 }
 

@@ -80,15 +80,19 @@ pub(super) fn interpolated(
                     && one.channel.as_ref() == Some(&channel.column)
             })
     };
+    let smooth: Vec<&Channel> = set.channels.iter().filter(is_smooth).collect();
+    if smooth.is_empty() {
+        return Ok(Vec::new());
+    }
+    let held = log_likelihood(bench, fitted, set)?;
     let mut found = Vec::new();
-    for channel in set.channels.iter().filter(is_smooth) {
+    for channel in smooth {
         let mut joined = set.clone();
         for own in &mut joined.channels {
             if own.column == channel.column {
                 own.interpolation = Some(Interpolation::Linear);
             }
         }
-        let held = log_likelihood(bench, fitted, set)?;
         let gain = log_likelihood(bench, fitted, &joined)? - held;
         if gain > TIED {
             found.push(Interpolated {
@@ -106,11 +110,13 @@ fn log_likelihood(bench: &Bench<'_>, fitted: &Fitted, set: &DataSet) -> Result<f
     let setup = stepwise.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &stepwise.recordings)?;
     let mut start = bench.carried(fitted, &estimation);
-    for free in &stepwise.problem.levels {
-        let place = stepwise.layout.place(free.unknown)?;
-        start[estimation.layout().place(free.unknown)?] = stepwise.problem.start[place];
+    if bench.is_over_windows() {
+        for free in &stepwise.problem.levels {
+            let place = stepwise.layout.place(free.unknown)?;
+            start[estimation.layout().place(free.unknown)?] = stepwise.problem.start[place];
+        }
+        stepwise.begin(&estimation, &mut start)?;
     }
-    stepwise.begin(&estimation, &mut start)?;
-    let again = stepwise.fit(&fitted.members, &estimation, &start)?;
+    let again = stepwise.fit_roughly(&fitted.members, &estimation, &start)?;
     Ok(again.fit.log_likelihood)
 }

@@ -174,7 +174,8 @@ pub(super) fn with(
     let known = comparison.fits.iter().map(|(own, _)| own).filter(known);
     let nearest = known.max_by(|a, b| a.evidence.log().total_cmp(&b.evidence.log()));
     let nearest = nearest.unwrap_or_else(|| comparison.nominal());
-    if nearest.members == members {
+    // A search that was given up is continued.
+    if nearest.members == members && nearest.fit.is_optimum() {
         return Ok(nearest.clone());
     }
     let setup = bench.setup(members);

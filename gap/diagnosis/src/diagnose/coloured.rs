@@ -12,7 +12,6 @@ use super::bench::Bench;
 use super::compare::Comparison;
 use super::evidence::{Evidence, Fitted};
 use super::feedback::for_kicks;
-use super::horizon::Judged;
 use super::localise::force_unit;
 use crate::effects::Candidate;
 
@@ -20,23 +19,16 @@ use crate::effects::Candidate;
 const COMPARED: usize = 2;
 /// Initial rates of the forces that are tried, relative to the forces of the mechanism over one second.
 const RATES: [f64; 3] = [0.01, 0.1, 1.0];
+/// A fit is given up where it stays below the log posterior without these forces by more than this.
+const SLACK: f64 = 2.0;
 /// The largest rate relative to these forces; the range of a level ends there.
 const LARGEST: f64 = 1e3;
 
-impl Judged<'_> {
-    /// One-step predictions that find a gap, with coloured process noise as well. Over windows there is no process
-    /// noise.
-    pub(super) fn with_coloured_noise(mut self) -> Result<Self, DiagnoseError> {
-        if !self.bench.is_over_windows() && !self.comparison.is_null() {
-            self.comparison = weighed(&self.bench, self.comparison)?;
-            self.outside = None;
-        }
-        Ok(self)
-    }
-}
-
 /// The comparison with the better of both kinds of process noise for each of these hypotheses.
-fn weighed(bench: &Bench<'_>, mut comparison: Comparison) -> Result<Comparison, DiagnoseError> {
+pub(super) fn weighed(
+    bench: &Bench<'_>,
+    mut comparison: Comparison,
+) -> Result<Comparison, DiagnoseError> {
     let mut compared: Vec<usize> = (0..comparison.fits.len().min(COMPARED)).collect();
     if !compared.contains(&comparison.nominal) {
         compared.push(comparison.nominal);
@@ -95,7 +87,9 @@ fn gain(bench: &Bench<'_>, base: &Fitted) -> Result<f64, DiagnoseError> {
         .collect();
     let mut free = other.free(&own, &setup);
     free.extend(walks.iter().map(|walk| walk.free));
-    let fit = other.fit_free(&estimation, &start, &free)?;
+    // Without the gain by impulses of inputs, which differs little.
+    let floor = base.fit.log_posterior - SLACK;
+    let fit = other.fit_free_above(floor, &estimation, &start, &free)?;
     let by_inputs = for_kicks(&other.input_innovations, other.weight, &estimation, &fit)?;
     Ok(Evidence::of(&other, &own, &fit, by_inputs).log() - base.evidence.log())
 }

@@ -230,9 +230,13 @@ impl Comparison {
         holds.then(|| Self::found(bench, search)).transpose()
     }
 
-    /// The nominal model alone.
-    pub(super) fn of_nominal(bench: &Bench<'_>, nominal: Fitted) -> Result<Self, DiagnoseError> {
-        Self::found(bench, Search::new(bench, nominal, []))
+    /// The nominal model and known hypotheses, without a search.
+    pub(super) fn of_known(
+        bench: &Bench<'_>,
+        nominal: Fitted,
+        known: Vec<Fitted>,
+    ) -> Result<Self, DiagnoseError> {
+        Self::found(bench, Search::new(bench, nominal, known))
     }
 
     /// Compares the nominal model and known hypotheses, and extends the best of them while that improves it.

@@ -263,8 +263,8 @@ fn distance(
         tangent.samples.len(),
         tangent.samples.iter().map(|(_, sample)| sample.whitened()),
     );
-    let score = tangent.slopes.tr_mul(&rest);
-    let mut squares = tangent.slopes.tr_mul(&tangent.slopes) + known(rival);
+    let score = &tangent.slopes * &rest;
+    let mut squares = &tangent.slopes * tangent.slopes.transpose() + known(rival);
     let size = squares.diagonal().amax();
     for i in 0..squares.nrows() {
         squares[(i, i)] += 1e-12 * size;

@@ -30,6 +30,8 @@ const SURE: f64 = 7.0;
 pub(super) struct InputInnovations {
     /// Number of feedback inputs.
     pub(super) count: usize,
+    /// Whether an input depends on the measurements, recorded or not.
+    pub(super) is_closed: bool,
     /// For each run its times.
     times: Vec<Vec<f64>>,
     /// For each run and row.
@@ -41,6 +43,7 @@ impl InputInnovations {
         let inputs = recordings.first().map_or(0, Recording::input_len);
         let mut input_innovations = Self {
             count: 0,
+            is_closed: false,
             times: recordings.iter().map(|run| run.times().to_vec()).collect(),
             values: recordings
                 .iter()
@@ -48,7 +51,11 @@ impl InputInnovations {
                 .collect(),
         };
         for input in 0..inputs {
-            let Some(innovation) = innovation(recordings, input) else {
+            let Some(feedback) = feedback(recordings, input) else {
+                continue;
+            };
+            input_innovations.is_closed = true;
+            let Some(innovation) = feedback.innovation else {
                 continue;
             };
             input_innovations.count += 1;
@@ -101,7 +108,7 @@ pub(super) fn for_kicks(
     let tangent = own.with_kicks(|kicks| estimation.tangent(&fit.values, &directions, kicks))?;
     let normal = Normal::of(&tangent, &whitened(&tangent), weight, &priors(fit));
     let nuisances: Vec<usize> = (0..directions.len()).collect();
-    let beside = normal.beside(&nuisances, nuisances.len()..tangent.slopes.ncols());
+    let beside = normal.beside(&nuisances, nuisances.len()..tangent.slopes.nrows());
     Ok(bounded(&beside, &tangent.added_squares, estimation))
 }
 
@@ -148,9 +155,15 @@ fn bounded(gram: &Gram, deviations: &[f64], estimation: &Estimation<'_>) -> f64 
     0.0
 }
 
-/// The innovations of an input, for each run and row: the part that neither its past nor the measurements predict;
-/// `None` for an input without feedback.
-fn innovation(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
+/// An input that depends on the measurements.
+struct Feedback {
+    /// The part that neither its past nor the measurements predict, for each run and row; `None` if they predict it all,
+    /// or if the measurements of the same row alone do.
+    innovation: Option<Vec<Vec<f64>>>,
+}
+
+/// The feedback of an input; `None` without.
+fn feedback(recordings: &[Recording], input: usize) -> Option<Feedback> {
     let first = LAGS.max(SEEN);
     let channels = recordings[0].channel_len();
     let mut rows: Vec<(usize, usize)> = Vec::new();
@@ -187,11 +200,15 @@ fn innovation(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
     let alone = rest(&regressors.columns(0, own).into_owned(), &command)?;
     let with_motion = rest(&regressors.columns(0, own + then).into_owned(), &command)?;
     let (before, after) = (alone.norm_squared(), with_motion.norm_squared());
-    let ratio = 0.5 * rows.len() as f64 * (before / after.max(f64::MIN_POSITIVE)).ln();
     let rest = rest(&regressors, &command)?;
-    let is_predicted = rest.norm() < PREDICTED * command.norm();
-    if is_predicted || ratio - (then as f64) < SURE {
-        return None;
+    let is_small = |rest: f64| rest < PREDICTED.powi(2) * command.norm_squared();
+    let is_told = |rest: f64, count: usize| {
+        let ratio = 0.5 * rows.len() as f64 * (before / rest.max(f64::MIN_POSITIVE)).ln();
+        ratio - count as f64 >= SURE
+    };
+    let is_closed = !is_small(before) && is_told(rest.norm_squared(), then + now);
+    if is_small(rest.norm_squared()) || !is_told(after, then) {
+        return is_closed.then_some(Feedback { innovation: None });
     }
     let mut all: Vec<Vec<f64>> = recordings
         .iter()
@@ -200,7 +217,9 @@ fn innovation(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
     for (&(run, row), &rest) in rows.iter().zip(rest.iter()) {
         all[run][row] = rest;
     }
-    Some(all)
+    Some(Feedback {
+        innovation: Some(all),
+    })
 }
 
 /// The residual of a regression.
@@ -256,9 +275,10 @@ mod tests {
 
     #[test]
     fn a_command_that_knows_the_motion_is_told_from_one_that_does_not() {
-        assert_eq!(InputInnovations::of(&[recording(false)]).count, 0);
+        let open = InputInnovations::of(&[recording(false)]);
+        assert!(open.count == 0 && !open.is_closed);
         let told = InputInnovations::of(&[recording(true)]);
-        assert_eq!(told.count, 1);
+        assert!(told.count == 1 && told.is_closed);
         let mut kicks = [f64::NAN; KICKS];
         told.kicks(0, 5.005, &mut kicks);
         assert!(kicks.iter().all(|kick| kick.is_finite() && *kick != 0.0));

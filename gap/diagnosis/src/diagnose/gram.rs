@@ -29,10 +29,9 @@ impl Normal {
         weight: f64,
         priors: &[Option<[f64; 2]>],
     ) -> Self {
-        // The transpose is contiguous in memory for the product.
-        let turned = tangent.slopes.transpose();
-        let mut squares = weight * (&turned * &tangent.slopes);
-        let mut scores = weight * (turned * rest);
+        let slopes = &tangent.slopes;
+        let mut squares = weight * (slopes * slopes.transpose());
+        let mut scores = weight * (slopes * rest);
         let mut square = weight * rest.norm_squared();
         for (place, prior) in priors.iter().enumerate() {
             if let Some([off, slope]) = prior {
@@ -80,7 +79,7 @@ fn scales(tangent: &Tangent) -> f64 {
 pub(super) struct ByRun<'t> {
     tangent: &'t Tangent,
     weight: f64,
-    /// Rows, transposed nuisance columns, their normal equations and the innovations of each run.
+    /// Samples, nuisance columns, their normal equations and the innovations of each run.
     runs: Vec<OfRun>,
     /// Derivatives of the priors of the nuisances, and how far these are off, in standard deviations.
     priors: DVector<f64>,
@@ -94,7 +93,7 @@ pub(super) struct ByRun<'t> {
 
 struct OfRun {
     rows: Range<usize>,
-    turned: DMatrix<f64>,
+    nuisances: DMatrix<f64>,
     squares: DMatrix<f64>,
     scores: DVector<f64>,
     rest: DVector<f64>,
@@ -114,16 +113,16 @@ impl<'t> ByRun<'t> {
         while let Some((run, _)) = samples.get(from) {
             let count = samples[from..].iter().take_while(|(own, _)| own == run);
             let rows = from..from + count.count();
-            let turned = DMatrix::from_fn(nuisances.len(), rows.len(), |i, row| {
-                tangent.slopes[(rows.start + row, nuisances[i].0)]
+            let own = DMatrix::from_fn(nuisances.len(), rows.len(), |i, row| {
+                tangent.slopes[(nuisances[i].0, rows.start + row)]
             });
             let rest = rest.rows(rows.start, rows.len()).into_owned();
             from = rows.end;
             runs.push(OfRun {
-                squares: weight * (&turned * turned.transpose()),
-                scores: weight * (&turned * &rest),
+                squares: weight * (&own * own.transpose()),
+                scores: weight * (&own * &rest),
                 rows,
-                turned,
+                nuisances: own,
                 rest,
             });
         }
@@ -163,15 +162,14 @@ impl<'t> ByRun<'t> {
     pub(super) fn of(&self, columns: Range<usize>) -> Vec<(DMatrix<f64>, DVector<f64>)> {
         let raw = self.runs.iter().map(|run| {
             let own = self.tangent.slopes.view(
-                (run.rows.start, columns.start),
-                (run.rows.len(), columns.len()),
+                (columns.start, run.rows.start),
+                (columns.len(), run.rows.len()),
             );
-            // The transpose is contiguous in memory for the products.
             let turned = own.transpose();
             (
-                self.weight * (&turned * own),
-                self.weight * (&turned * &run.rest),
-                self.weight * (&run.turned * own),
+                self.weight * (own * &turned),
+                self.weight * (own * &run.rest),
+                self.weight * (&run.nuisances * &turned),
             )
         });
         let raw: Vec<_> = raw.collect();

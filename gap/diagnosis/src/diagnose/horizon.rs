@@ -12,6 +12,7 @@ use std::f64::consts::PI;
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::calibration::{IMMATERIAL, TIED};
+use super::coloured;
 use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::report::Window;
@@ -61,7 +62,26 @@ pub(super) struct Judged<'a> {
     pub(super) outside: Option<Vec<Window>>,
 }
 
-impl Judged<'_> {
+impl<'a> Judged<'a> {
+    fn of(bench: Bench<'a>, screen: Screen, comparison: Comparison) -> Self {
+        Self {
+            bench,
+            screen,
+            comparison,
+            outside: None,
+        }
+    }
+
+    /// One-step predictions that find a gap, with coloured process noise as well. Over windows there is no process
+    /// noise.
+    pub(super) fn with_coloured_noise(mut self) -> Result<Self, DiagnoseError> {
+        if !self.bench.is_over_windows() && !self.comparison.is_null() {
+            self.comparison = coloured::weighed(&self.bench, self.comparison)?;
+            self.outside = None;
+        }
+        Ok(self)
+    }
+
     /// The result for recordings without the windows that no hypothesis predicts: without a gap elsewhere, the cause in
     /// these windows is still outside the library.
     pub(super) fn without_events(mut self) -> Self {
@@ -94,26 +114,32 @@ pub(super) fn judged<'a>(
     let holds = stepwise.as_ref().filter(|(_, holds)| *holds);
     let again = holds.and_then(|(stepwise, _)| seen.again(stepwise.best()));
     let again = again.map(|again| again.fitted.clone());
+    let none = |comparison: &Comparison| comparison.best().members.is_empty();
+    let mut only_imitations = false;
     let of_windows = if holds.is_some() {
         None
     } else {
         stage("fitting simulations over windows");
         let mut found = simulated(&over, seen.comparable()).ok();
-        if let Some((_, windows)) = &mut found
-            && bench.is_of_robot
-        {
+        if let Some((_, windows)) = &mut found {
+            let leads = !none(windows);
             windows.without_imitations(&bench, &over, &nominal);
+            only_imitations = leads && none(windows);
         }
         found
     };
-    let none = |comparison: &Comparison| comparison.best().members.is_empty();
-    // Without an effect over its windows a robot is judged by the innovations of the nominal model.
-    if bench.is_of_robot
-        && of_windows
-            .as_ref()
-            .is_some_and(|(_, windows)| none(windows))
+    // Without an effect over its windows a robot is judged by the innovations of the nominal model, and so is any mechanism
+    // whose windows show nothing but imitations of disturbances.
+    if only_imitations
+        || bench.is_of_robot
+            && of_windows
+                .as_ref()
+                .is_some_and(|(_, windows)| none(windows))
     {
-        stepwise = Some((Comparison::of_nominal(&bench, nominal.clone())?, true));
+        stepwise = Some((
+            Comparison::of_known(&bench, nominal.clone(), Vec::new())?,
+            true,
+        ));
     }
     // Without an effect in either ranking there is no gap.
     let nominal_over = of_windows.as_ref().filter(|_| bench.is_of_robot);
@@ -124,6 +150,10 @@ pub(super) fn judged<'a>(
     let mut stepwise = stepwise.map(|(stepwise, _)| stepwise);
     if let Some((of_windows, mut comparison)) = of_windows {
         stage("testing laws outside the library");
+        if let Some(mut stepwise) = outdone(&bench, &over, &nominal, comparison.best())? {
+            stepwise.weigh_unknown(&bench)?;
+            return Ok(Judged::of(bench, screen, stepwise));
+        }
         comparison.weigh_unknown(&over)?;
         let is_open = comparison.leads_unknown() && !none(&comparison);
         let whole = if is_open {
@@ -135,23 +165,13 @@ pub(super) fn judged<'a>(
             None
         };
         if let Some(comparison) = whole {
-            return Ok(Judged {
-                bench,
-                screen,
-                comparison,
-                outside: None,
-            });
+            return Ok(Judged::of(bench, screen, comparison));
         }
         if none(&comparison) {
             // One-step predictions resolve smaller remainders.
             comparison.left = leftover(&bench, &nominal)?;
         }
-        return Ok(Judged {
-            bench: over,
-            screen: of_windows,
-            comparison,
-            outside: None,
-        });
+        return Ok(Judged::of(over, of_windows, comparison));
     }
     // One-step predictions decide also if no simulation reproduces the recordings.
     let comparison = match stepwise {
@@ -169,18 +189,14 @@ pub(super) fn judged<'a>(
     if let Some(again) = again.filter(|_| comparison.leads_unknown()) {
         comparison.bear_out_unknown(&over, &again)?;
     }
-    Ok(Judged {
-        bench,
-        screen,
-        comparison,
-        outside: None,
-    })
+    Ok(Judged::of(bench, screen, comparison))
 }
 
 impl Comparison {
-    /// Over windows, where there is no process noise, effects may imitate disturbances: a robot's hypotheses are left out
-    /// if one step ahead, with process noise, they predict worse than the nominal model or than with fewer effects. A
-    /// filter does not carry the coordinates that effects add. `levels` are those of the nominal model one step ahead.
+    /// Over windows, where there is no process noise, effects may imitate disturbances: hypotheses are left out if one step
+    /// ahead, with process noise, they predict worse than the nominal model or than with fewer effects, in a closed loop
+    /// if they do not predict better. A filter does not carry the coordinates that effects add. `levels` are those of the
+    /// nominal model one step ahead.
     fn without_imitations(&mut self, bench: &Bench<'_>, over: &Bench<'_>, levels: &Fitted) {
         let taken = |fitted: &Fitted| bench.as_it_is(over, fitted, levels).ok();
         // One-step predictions that diverge tell nothing.
@@ -188,6 +204,9 @@ impl Comparison {
             return;
         };
         let nominal = without.fit.log_likelihood;
+        // The command of a controller answers disturbances, so that windows without them are biased.
+        let is_closed = bench.input_innovations.is_closed && !bench.is_of_robot;
+        let lowest = if is_closed { TIED } else { -TIED };
         let one_step = |fitted: &Fitted| {
             let taken = taken(fitted)?;
             if bench.is_late(&fitted.members) {
@@ -213,15 +232,36 @@ impl Comparison {
             let fewer = within(fitted).and_then(&one_step);
             let least = fewer.map_or(nominal, |fewer| fewer.max(nominal));
             let gain = one_step(fitted)? - least;
-            (gain < -TIED).then(|| {
+            (gain < lowest).then(|| {
                 format!(
-                    "it predicts windows better, but one step ahead it lowers the log likelihood by {:.0}: over windows \
-                     it imitates disturbances",
-                    -gain
+                    "it predicts windows better, but one step ahead it changes the log likelihood by {gain:.1}: over \
+                     windows it imitates disturbances"
                 )
             })
         });
     }
+}
+
+/// The comparison one step ahead, with process noise that has memory, of the nominal model and a hypothesis that leads over
+/// windows, if the nominal model leads there: the command of a controller answers disturbances, so that windows without them
+/// are biased.
+fn outdone(
+    bench: &Bench<'_>,
+    over: &Bench<'_>,
+    nominal: &Fitted,
+    best: &Fitted,
+) -> Result<Option<Comparison>, DiagnoseError> {
+    let is_closed = bench.input_innovations.is_closed && !bench.is_of_robot;
+    if !is_closed || best.members.is_empty() {
+        return Ok(None);
+    }
+    // One-step predictions that diverge tell nothing.
+    let Ok((_, again)) = bench.fitted_again(over, best) else {
+        return Ok(None);
+    };
+    let both = Comparison::of_known(bench, nominal.clone(), vec![again])?;
+    let weighed = coloured::weighed(bench, both)?;
+    Ok(weighed.best().members.is_empty().then_some(weighed))
 }
 
 /// The ranking over longer windows, if no effect of the library explains the one-step predictions but one nearly closes

@@ -91,7 +91,7 @@ impl Screen {
         let columns = free.len()..directions.len();
         let mut nuisances: Vec<usize> = (0..free.len()).collect();
         let gram = normal.beside(&nuisances, columns.clone());
-        nuisances.extend(directions.len()..tangent.slopes.ncols());
+        nuisances.extend(directions.len()..tangent.slopes.nrows());
         let beyond = normal.beside(&nuisances, columns);
         let for_kicks = fitted.evidence.by_inputs;
         let all = in_parallel(own, |(candidate, columns)| {

@@ -321,7 +321,7 @@ pub(super) fn term_scores(
         values: &with_kicks,
     };
     let tangent = estimation.tangent(&fitted.fit.values, &free, Some(all))?;
-    let added = free.len()..tangent.slopes.ncols();
+    let added = free.len()..tangent.slopes.nrows();
     // Their variance is at most that of the error of the filter.
     let of_kicks = added.clone().zip(&tangent.added_squares);
     let of_kicks = of_kicks

@@ -24,8 +24,8 @@ const DAMPED: [f64; 2] = [2e-5, 1e6];
 const FLAT: f64 = 10.0;
 /// Number of steps that together must gain more than [`Effort::gain`].
 const LAST: usize = 4;
-/// A search is given up after this many steps if this many times the last gains do not reach [`Effort::floor`].
-const GIVEN_UP: (usize, f64) = (5, 10.0);
+/// A search is given up where this many times the next or the last gain do not reach [`Effort::floor`].
+const GIVEN_UP: f64 = 4.0;
 
 impl Fit {
     /// Searches for an optimum from `start` as [`Fit::of`] does, by scoring. The curvature of the
@@ -52,8 +52,8 @@ impl Fit {
             let (step, gain) = scaling.step(&posterior, &point, &information, damping);
             let promises_little = (0.0..=effort.gain).contains(&gain);
             let gains_little = gained.iter().sum::<f64>() < effort.gain;
-            let reach = point.objective + GIVEN_UP.1 * gained.iter().sum::<f64>();
-            let is_given_up = steps >= GIVEN_UP.0 && reach < effort.floor;
+            let reach = point.objective + GIVEN_UP * gain.max(gained[LAST - 1]);
+            let is_given_up = reach < effort.floor;
             let ends = is_given_up || steps >= effort.steps || damping > DAMPED[1];
             let is_over = promises_little && (damping <= 0.0 || gains_little);
             if is_over || ends {

@@ -45,7 +45,7 @@ pub struct Shapes<'s> {
 pub struct Tangent {
     /// The samples in the order of runs, rows and channels, with the run of each.
     pub samples: Vec<(usize, Innovation)>,
-    /// A row for each sample; a column for each direction, then for each shape along the first
+    /// A column for each sample; a row for each direction, then for each shape along the first
     /// disturbance or channel, and so on.
     pub slopes: DMatrix<f64>,
     /// For each shape along a disturbance, in the order of their columns: the mean square of its contribution per

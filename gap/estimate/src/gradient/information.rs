@@ -32,7 +32,7 @@ impl Estimation<'_> {
     ) -> Result<DMatrix<f64>, EstimateError> {
         let selection = Selection::new(&self.layout(), free)?;
         let tangent = self.tangent(values, &selection.directions(), None)?;
-        let information = tangent.slopes.tr_mul(&tangent.slopes);
+        let information = &tangent.slopes * tangent.slopes.transpose();
         Ok(selection.stretched(information, values))
     }
 

@@ -72,30 +72,18 @@ impl Estimation<'_> {
             *square /= steps.max(1) as f64;
         }
         samples.sort_by_key(|(run, sample, _)| (*run, sample.row, sample.channel));
-        let rows: Vec<&[f64]> = samples.iter().map(|(.., slopes)| *slopes).collect();
+        let mut slopes = Vec::with_capacity(columns * samples.len());
+        for (.., own) in &samples {
+            slopes.extend_from_slice(own);
+        }
         Ok(Tangent {
             samples: (samples.iter())
                 .map(|(run, sample, _)| (*run, *sample))
                 .collect(),
-            slopes: by_columns(&rows, columns),
+            slopes: DMatrix::from_vec(columns, samples.len(), slopes),
             added_squares,
         })
     }
-}
-
-/// Rows as a matrix: block by block, since it lies in memory by columns.
-fn by_columns(rows: &[&[f64]], columns: usize) -> DMatrix<f64> {
-    const BLOCK: usize = 32;
-    let mut matrix = DMatrix::zeros(rows.len(), columns);
-    for (block, rows) in rows.chunks(BLOCK).enumerate() {
-        for column in 0..columns {
-            let mut entries = matrix.view_mut((block * BLOCK, column), (rows.len(), 1));
-            for (entry, row) in entries.iter_mut().zip(rows) {
-                *entry = row[column];
-            }
-        }
-    }
-    matrix
 }
 
 /// Derivatives of the state along a run.

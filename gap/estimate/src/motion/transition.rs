@@ -223,8 +223,9 @@ fn differ(
 
 /// `c += factor a b`
 fn add_product(factor: f64, a: &[f64], b: &[f64], n: usize, c: &mut [f64]) {
+    let rows = b.chunks_exact(n);
     for (a, c) in a.chunks_exact(n).zip(c.chunks_exact_mut(n)) {
-        for (&entry, b) in a.iter().zip(b.chunks_exact(n)) {
+        for (&entry, b) in a.iter().zip(rows.clone()) {
             if entry != 0.0 {
                 add_scaled(factor * entry, b, c);
             }

@@ -47,14 +47,19 @@ impl Bench<'_> {
         self.fit_by(Fit::quick, effort, members, estimation, start)
     }
 
-    /// Fits some values.
-    pub(in super::super) fn fit_free(
+    /// Fits some values; given up where it stays far below a log posterior.
+    pub(in super::super) fn fit_free_above(
         &self,
+        floor: f64,
         estimation: &Estimation<'_>,
         start: &[f64],
         free: &[Free],
     ) -> Result<Fit, DiagnoseError> {
-        self.weighed(estimation, start, free, Fit::quick, self.effort())
+        let effort = Effort {
+            floor,
+            ..self.effort()
+        };
+        self.weighed(estimation, start, free, Fit::quick, effort)
     }
 
     /// Fits a hypothesis with the accuracy that shares of a gap need.

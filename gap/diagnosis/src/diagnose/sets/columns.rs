@@ -126,12 +126,16 @@ impl Level {
         columns: &[Column],
     ) -> Self {
         let (free, own) = (nuisances.len(), columns.len());
-        let kicks = tangent.slopes.ncols() - free - own;
+        let kicks = tangent.slopes.nrows() - free - own;
         // Innovations with all sizes at zero.
         let mut rest = whitened(tangent);
         for (place, column) in columns.iter().enumerate() {
             if column.size != 0.0 {
-                rest.axpy(-column.size, &tangent.slopes.column(free + place), 1.0);
+                rest.axpy(
+                    -column.size,
+                    &tangent.slopes.row(free + place).transpose(),
+                    1.0,
+                );
             }
         }
         let priors: Vec<_> = nuisances.iter().map(|nuisance| nuisance.known).collect();

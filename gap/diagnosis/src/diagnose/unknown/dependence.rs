@@ -224,10 +224,15 @@ impl<'b> Dependence<'b> {
         if x.is_nan() {
             return to.fill(0.0);
         }
-        let factor = self.factor(bench, model, at);
-        for (wave, pair) in to.chunks_exact_mut(2).enumerate() {
-            let (sin, cos) = (self.rate(wave) * x).sin_cos();
-            pair.copy_from_slice(&[factor * sin, factor * cos]);
+        // Each by the angle added to the one before.
+        let (sin, cos) = (self.first * x).sin_cos();
+        let mut before = [0.0, self.factor(bench, model, at)];
+        for pair in to.chunks_exact_mut(2) {
+            before = [
+                before[0] * cos + before[1] * sin,
+                before[1] * cos - before[0] * sin,
+            ];
+            pair.copy_from_slice(&before);
         }
     }
 

@@ -5,7 +5,7 @@
 //! the bias of closed loops with a wrong noise model). The most probable hypotheses are therefore fitted once more with
 //! a random-walk force along every pseudo-velocity.
 
-use appell_estimate::{Disturbance, Estimation, Free, Setup, Unknown};
+use appell_estimate::{Disturbance, Estimation, Fit, Free, Setup, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -89,7 +89,7 @@ fn gain(bench: &Bench<'_>, base: &Fitted) -> Result<f64, DiagnoseError> {
     free.extend(walks.iter().map(|walk| walk.free));
     // Without the gain by impulses of inputs, which differs little.
     let floor = base.fit.log_posterior - SLACK;
-    let fit = other.fit_free_above(floor, &estimation, &start, &free)?;
+    let fit = other.weighed(&estimation, &start, &free, Fit::quick, other.above(floor))?;
     let by_inputs = for_kicks(&other.input_innovations, other.weight, &estimation, &fit)?;
     Ok(Evidence::of(&other, &own, &fit, by_inputs).log() - base.evidence.log())
 }

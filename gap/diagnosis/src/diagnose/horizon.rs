@@ -130,16 +130,12 @@ pub(super) fn judged<'a>(
     };
     // Without an effect over its windows a robot is judged by the innovations of the nominal model, and so is any mechanism
     // whose windows show nothing but imitations of disturbances.
-    if only_imitations
-        || bench.is_of_robot
-            && of_windows
-                .as_ref()
-                .is_some_and(|(_, windows)| none(windows))
-    {
-        stepwise = Some((
-            Comparison::of_known(&bench, nominal.clone(), Vec::new())?,
-            true,
-        ));
+    let shows_nothing = of_windows
+        .as_ref()
+        .is_some_and(|(_, windows)| none(windows));
+    if only_imitations || bench.is_of_robot && shows_nothing {
+        let known = Comparison::of_known(&bench, nominal.clone(), Vec::new())?;
+        stepwise = Some((known, true));
     }
     // Without an effect in either ranking there is no gap.
     let nominal_over = of_windows.as_ref().filter(|_| bench.is_of_robot);

@@ -72,15 +72,12 @@ impl Estimation<'_> {
             *square /= steps.max(1) as f64;
         }
         samples.sort_by_key(|(run, sample, _)| (*run, sample.row, sample.channel));
-        let mut slopes = Vec::with_capacity(columns * samples.len());
-        for (.., own) in &samples {
-            slopes.extend_from_slice(own);
-        }
+        let slopes: Vec<&[f64]> = samples.iter().map(|(.., own)| *own).collect();
         Ok(Tangent {
             samples: (samples.iter())
                 .map(|(run, sample, _)| (*run, *sample))
                 .collect(),
-            slopes: DMatrix::from_vec(columns, samples.len(), slopes),
+            slopes: DMatrix::from_vec(columns, samples.len(), slopes.concat()),
             added_squares,
         })
     }

@@ -26,11 +26,7 @@ impl Bench<'_> {
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
-        let effort = Effort {
-            floor,
-            ..self.effort()
-        };
-        self.fit_by(Fit::quick, effort, members, estimation, start)
+        self.fit_by(Fit::quick, self.above(floor), members, estimation, start)
     }
 
     /// The same to a twentieth of a standard deviation, for values that are reported alone.
@@ -45,21 +41,6 @@ impl Bench<'_> {
             ..self.effort()
         };
         self.fit_by(Fit::quick, effort, members, estimation, start)
-    }
-
-    /// Fits some values; given up where it stays far below a log posterior.
-    pub(in super::super) fn fit_free_above(
-        &self,
-        floor: f64,
-        estimation: &Estimation<'_>,
-        start: &[f64],
-        free: &[Free],
-    ) -> Result<Fit, DiagnoseError> {
-        let effort = Effort {
-            floor,
-            ..self.effort()
-        };
-        self.weighed(estimation, start, free, Fit::quick, effort)
     }
 
     /// Fits a hypothesis with the accuracy that shares of a gap need.
@@ -77,6 +58,14 @@ impl Bench<'_> {
             COARSE
         } else {
             EFFORT
+        }
+    }
+
+    /// The effort of a fit that is given up where it stays far below a log posterior.
+    pub(in super::super) fn above(&self, floor: f64) -> Effort {
+        Effort {
+            floor,
+            ..self.effort()
         }
     }
 

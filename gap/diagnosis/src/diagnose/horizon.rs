@@ -121,14 +121,15 @@ pub(super) fn judged<'a>(
     } else {
         stage("fitting simulations over windows");
         let mut found = simulated(&over, seen.comparable()).ok();
-        if let Some((_, windows)) = &mut found {
+        let may_imitate = bench.is_of_robot || bench.input_innovations.is_closed;
+        if let Some((_, windows)) = found.as_mut().filter(|_| may_imitate) {
             let leads = !none(windows);
             windows.without_imitations(&bench, &over, &nominal);
             only_imitations = leads && none(windows);
         }
         found
     };
-    // Without an effect over its windows a robot is judged by the innovations of the nominal model, and so is any mechanism
+    // Without an effect over its windows a robot is judged by the innovations of the nominal model, and so is a closed loop
     // whose windows show nothing but imitations of disturbances.
     let shows_nothing = of_windows
         .as_ref()
@@ -189,9 +190,9 @@ pub(super) fn judged<'a>(
 }
 
 impl Comparison {
-    /// Over windows, where there is no process noise, effects may imitate disturbances: hypotheses are left out if one step
-    /// ahead, with process noise, they predict worse than the nominal model or than with fewer effects, in a closed loop
-    /// if they do not predict better. A filter does not carry the coordinates that effects add. `levels` are those of the
+    /// Over windows, where there is no process noise, effects may imitate the disturbances to which a controller responds:
+    /// hypotheses are left out if one step ahead, with process noise, a robot is predicted worse than by the nominal model
+    /// or with fewer effects, and any other closed loop if it is not predicted better. A filter does not carry the coordinates that effects add. `levels` are those of the
     /// nominal model one step ahead.
     fn without_imitations(&mut self, bench: &Bench<'_>, over: &Bench<'_>, levels: &Fitted) {
         let taken = |fitted: &Fitted| bench.as_it_is(over, fitted, levels).ok();

@@ -435,8 +435,12 @@ impl<'b, 'a> Search<'b, 'a> {
         Ok(())
     }
 
-    /// The log posterior of the values of the best hypothesis, less what others may make up for by fewer values; that of a delayed channel refers to fewer rows.
+    /// The log posterior of the values of the best hypothesis, less what others may make up for by fewer values, for a
+    /// robot, whose fits take long; that of a delayed channel refers to fewer rows.
     fn floor(&self, members: &[usize]) -> f64 {
+        if !self.bench.is_of_robot {
+            return f64::NEG_INFINITY;
+        }
         let is_late = |members: &[usize]| self.bench.is_late(members);
         let mut best = (self.best().map(|best| &self.fits[best])).into_iter();
         let comparable = best.find(|best| !is_late(&best.members) && !is_late(members));

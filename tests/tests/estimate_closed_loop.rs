@@ -47,8 +47,8 @@ fn scores(tangent: &Tangent) -> Vec<f64> {
     let whitened: Vec<f64> = innovations
         .map(|(_, own)| Innovation::whitened(own))
         .collect();
-    let columns = tangent.slopes.column_iter();
-    columns
+    let directions = tangent.slopes.row_iter();
+    directions
         .map(|column| {
             let along: f64 = column.iter().zip(&whitened).map(|(s, r)| s * r).sum();
             along / column.norm()

@@ -178,7 +178,7 @@ fn known_when_late(between: Interpolation) {
     let (above, below) = (residuals(delay + h), residuals(delay - h));
     for (row, (above, below)) in above.into_iter().zip(below).enumerate() {
         let wanted = (above - below) / (2.0 * h) / 0.02;
-        let found = tangent.slopes[(row, 0)];
+        let found = tangent.slopes[(0, row)];
         // The tangent takes slopes at the middle of steps.
         assert!(
             (found - wanted).abs() < 0.02,

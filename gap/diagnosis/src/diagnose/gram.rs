@@ -29,9 +29,8 @@ impl Normal {
         weight: f64,
         priors: &[Option<[f64; 2]>],
     ) -> Self {
-        let slopes = &tangent.slopes;
-        let mut squares = weight * (slopes * slopes.transpose());
-        let mut scores = weight * (slopes * rest);
+        let mut squares = weight * (&tangent.slopes * tangent.slopes.transpose());
+        let mut scores = weight * (&tangent.slopes * rest);
         let mut square = weight * rest.norm_squared();
         for (place, prior) in priors.iter().enumerate() {
             if let Some([off, slope]) = prior {

@@ -239,9 +239,8 @@ impl Comparison {
     }
 }
 
-/// The comparison one step ahead, with process noise that has memory, of the nominal model and a hypothesis that leads over
-/// windows, if the nominal model leads there: the command of a controller answers disturbances, so that windows without them
-/// are biased.
+/// The comparison one step ahead, with coloured process noise, of the nominal model and a hypothesis that leads over windows,
+/// if the former leads there: the command of a controller answers disturbances, so that windows without them are biased.
 fn outdone(
     bench: &Bench<'_>,
     over: &Bench<'_>,

@@ -228,10 +228,8 @@ impl<'b> Dependence<'b> {
         let (sin, cos) = (self.first * x).sin_cos();
         let mut before = [0.0, self.factor(bench, model, at)];
         for pair in to.chunks_exact_mut(2) {
-            before = [
-                before[0] * cos + before[1] * sin,
-                before[1] * cos - before[0] * sin,
-            ];
+            let [s, c] = before;
+            before = [s * cos + c * sin, c * cos - s * sin];
             pair.copy_from_slice(&before);
         }
     }

@@ -70,11 +70,8 @@ pub enum DesignError {
         name: String,
     },
     /// Sensitivity indices need independent draws.
-    #[error("sensitivity indices need independent factors that are drawn: {reason}")]
-    NotIndependent {
-        /// The reason.
-        reason: &'static str,
-    },
+    #[error("sensitivity indices need independent factors that are drawn: {0}")]
+    NotIndependent(&'static str),
     /// More factors than the sequence has dimensions.
     #[error("{found} factors are too many for Sobol points; at most {most} are possible")]
     Dimensions {
@@ -305,7 +302,7 @@ fn independent(
     } else {
         return Ok(());
     };
-    Err(DesignError::NotIndependent { reason })
+    Err(DesignError::NotIndependent(reason))
 }
 
 fn count_cases(

@@ -14,7 +14,6 @@
 pub mod chunk;
 pub mod design;
 pub mod digest;
-mod directions;
 pub mod distribution;
 pub mod limits;
 pub mod normal;

@@ -11,7 +11,7 @@ use crate::steady::equations::SteadyEquations;
 use crate::steady::newton;
 use crate::steady::{SteadyError, SteadyProblem};
 use crate::term::Term;
-use continuation::{End, OnCurve, correct, follow};
+use continuation::{End, OnCurve, both_ways, correct, follow, turned};
 
 pub use types::{Branch, BranchError, BranchOptions, BranchPoint, Kind, Requirement, Special};
 
@@ -175,32 +175,19 @@ impl<'a> Branches<'a> {
                 curve: Vec::new(),
             });
         };
-        let mut back = start.clone();
-        back.tangent.neg_mut();
-        let (forward, end) = self.follow(equations, &start);
-        let (mut curve, first) = if end == End::Closed {
-            (vec![start], End::Closed)
-        } else {
-            let (mut backward, first) = self.follow(equations, &back);
-            backward.reverse();
-            for point in &mut backward {
-                point.tangent.neg_mut();
-            }
-            backward.push(start);
-            (backward, first)
-        };
-        curve.extend(forward);
+        let longest = |at: &OnCurve| self.longest(equations, at);
+        let limit = |a: &OnCurve, b: &OnCurve| self.first_limit(equations, a, b);
+        let most = self.options.most_points;
+        let (mut curve, mut ends) = both_ways(&start, |start| {
+            follow(equations, start, most, longest, limit)
+        });
         // In the order of increasing values of the quantity, if they differ.
         let value = |at: &OnCurve| equations.term(self.along, &at.z).0;
-        let mut ends = [first, end];
         if let [a, .., b] = curve.as_slice()
             && value(a) > value(b)
         {
-            curve.reverse();
+            curve = turned(curve);
             ends.reverse();
-            for point in &mut curve {
-                point.tangent.neg_mut();
-            }
         }
         self.describe(equations, &curve, ends)
     }
@@ -235,15 +222,7 @@ impl<'a> Branches<'a> {
     }
 
     fn isolated(&self) -> BranchError {
-        let along = self.along.name(self.problem.model().info());
-        BranchError::Isolated { along }
-    }
-
-    /// Points after `start` along its tangent, up to where the curve ends.
-    fn follow(&self, equations: &SteadyEquations<'_>, start: &OnCurve) -> (Vec<OnCurve>, End) {
-        let longest = |at: &OnCurve| self.longest(equations, at);
-        let limit = |a: &OnCurve, b: &OnCurve| self.first_limit(equations, a, b);
-        follow(equations, start, self.options.most_points, longest, limit)
+        BranchError::Isolated(self.along.name(self.problem.model().info()))
     }
 
     /// The longest step: a part of the quantity's range, and of the size of the unknowns.

@@ -161,7 +161,7 @@ impl<'a> SteadyProblem<'a> {
             Term::Output(i) => (i, info.output_len()),
         };
         if index >= len {
-            return Err(SteadyError::Unknown { term });
+            return Err(SteadyError::Unknown(term));
         }
         let name = term.name(info);
         match term {
@@ -170,11 +170,9 @@ impl<'a> SteadyProblem<'a> {
                 Err(SteadyError::Turns { name, instead })
             }
             Term::State(state) if !self.structure.is_essential(state) => {
-                Err(SteadyError::Ignorable { name })
+                Err(SteadyError::Ignorable(name))
             }
-            Term::Rate(state) if self.structure.is_essential(state) => {
-                Err(SteadyError::Zero { name })
-            }
+            Term::Rate(state) if self.structure.is_essential(state) => Err(SteadyError::Zero(name)),
             Term::Rate(_) | Term::Output(_) if !self.is_constant(term) => {
                 let instead = self.others(|term| !matches!(term, Term::State(_)));
                 Err(SteadyError::NotConstant { name, instead })

@@ -3,6 +3,7 @@
 use appell_spec::mechanism::{
     Connection, FrameId, GROUND, Load, LoadKind, Mechanism, ORIGIN, Point, PointId,
 };
+use serde::Serialize;
 
 /// A line between two points.
 pub struct Link {
@@ -15,7 +16,8 @@ pub struct Link {
 }
 
 /// Kind of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum LinkKind {
     /// Coordinates from the origin; not a part of the mechanism.
     Way,

@@ -110,7 +110,8 @@ fn close(program: Program, values: &mut [f64]) -> bool {
     closed.is_ok()
 }
 
-fn set(values: &mut [f64], symbols: &[SymbolId], numbers: &[f64]) {
+/// Sets the values of symbols.
+pub(super) fn set(values: &mut [f64], symbols: &[SymbolId], numbers: &[f64]) {
     for (symbol, number) in symbols.iter().zip(numbers) {
         values[index(*symbol)] = *number;
     }

@@ -3,12 +3,11 @@
 use appell_runtime::Trajectory;
 use appell_runtime::model::{Model, ModelInfo};
 use appell_spec::Mechanism;
-use appell_spec::mechanism::{BodyId, FrameId, Point, PointId};
+use appell_spec::mechanism::{FrameId, Point, PointId};
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use serde_json::{Value, json};
 
-use crate::drawing::film::{Film, FilmMaker, Force, ForceKind, Shape};
-use crate::drawing::link::{Link, LinkKind};
+use crate::drawing::film::{Film, FilmMaker};
 
 /// Largest number of rows; larger pages open slowly.
 const MOST_ROWS: usize = 12_000;
@@ -40,6 +39,10 @@ pub fn data(
     });
     let events = (motion.breaches.iter())
         .map(|breach| json!({ "t": breach.t, "what": breach.describe(info) }));
+    let links = (film.links.iter())
+        .map(|link| json!({ "kind": link.kind, "ends": link.ends.map(PointId::index) }));
+    let forces =
+        (film.forces.iter()).map(|force| json!({ "kind": force.kind, "at": force.at.index() }));
     let [right, up, floor, vertical] = film.view;
     let flat = film.flat_across.is_some();
     json!({
@@ -50,9 +53,9 @@ pub fn data(
         "view": { "right": right, "up": up, "floor": floor, "vertical": vertical, "flat": flat },
         "points": points(mechanism),
         "frames": frames(mechanism, &film),
-        "links": links(&film),
+        "links": links.collect::<Vec<_>>(),
         "bodies": bodies(mechanism, &film),
-        "forces": forces(&film),
+        "forces": forces.collect::<Vec<_>>(),
         "contacts": film.contacts.iter().map(|point| point.index()).collect::<Vec<_>>(),
         "columns": entries.collect::<Vec<_>>(),
         "times": packed(times),
@@ -92,44 +95,12 @@ fn frames(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
         .collect()
 }
 
-fn links(film: &Film) -> Vec<Value> {
-    let link = |link: &Link| {
-        let kind = match link.kind {
-            LinkKind::Way => "way",
-            LinkKind::Rod => "rod",
-            LinkKind::Spring => "spring",
-            LinkKind::Damper => "damper",
-        };
-        json!({ "kind": kind, "ends": link.ends.map(PointId::index) })
-    };
-    film.links.iter().map(link).collect()
-}
-
 fn bodies(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
-    let shape = |(id, shape): &(BodyId, Shape)| {
+    let shapes = film.shapes.iter().map(|(id, shape)| {
         let body = &mechanism.bodies[*id];
-        let shape = match shape {
-            Shape::Wheel { hub, axis, radius } => {
-                json!({ "kind": "wheel", "hub": hub, "axis": axis, "radius": radius })
-            }
-            Shape::Ball(radius) => json!({ "kind": "ball", "radius": radius }),
-            Shape::Ellipsoid(map) => json!({ "kind": "ellipsoid", "map": map }),
-        };
         json!({ "name": body.name, "centre": body.centre.index(), "frame": body.frame.map(FrameId::index), "shape": shape })
-    };
-    film.shapes.iter().map(shape).collect()
-}
-
-fn forces(film: &Film) -> Vec<Value> {
-    let force = |force: &Force| {
-        let kind = match force.kind {
-            ForceKind::Reaction => "reaction",
-            ForceKind::Load => "load",
-            ForceKind::Weight => "weight",
-        };
-        json!({ "kind": kind, "at": force.at.index() })
-    };
-    film.forces.iter().map(force).collect()
+    });
+    shapes.collect()
 }
 
 /// Heading of a column.

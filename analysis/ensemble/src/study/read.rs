@@ -179,6 +179,29 @@ impl Reader<'_> {
         table
     }
 
+    /// The only one of several keys that an entry has. Else `wrong` tells what is wrong with none and with several of
+    /// them, unless an unknown key has been reported already.
+    pub(super) fn only_one(
+        &mut self,
+        name: &Text,
+        entry: &DeTable<'_>,
+        [forms, others]: [&[&'static str]; 2],
+        wrong: [&str; 2],
+    ) -> Option<&'static str> {
+        let given = forms.iter().filter(|form| entry.contains_key(**form));
+        let given: Vec<&str> = given.copied().collect();
+        let is_known = |key: &str| forms.contains(&key) || others.contains(&key);
+        if let [form] = given[..] {
+            return Some(form);
+        }
+        if !given.is_empty() || entry.keys().all(|key| is_known(key.get_ref())) {
+            let message = format!("`{}` {}", name.text, wrong[usize::from(!given.is_empty())]);
+            let help = format!("write one of {}", forms.join(", "));
+            self.tell(Code::ConflictingKeys, message, name.at.clone(), &help);
+        }
+        None
+    }
+
     /// The items of a section in the order of the text. Their names are those of specs: columns, figures and files
     /// are called after them.
     pub(super) fn items<'v, 'd>(

@@ -117,11 +117,8 @@ pub enum BranchError {
     #[error(transparent)]
     Steady(#[from] SteadyError),
     /// The conditions leave no family of motions.
-    #[error("the steady motions are isolated; release a condition to continue them along {along}")]
-    Isolated {
-        /// The quantity.
-        along: String,
-    },
+    #[error("the steady motions are isolated; release a condition to continue them along {0}")]
+    Isolated(String),
     /// The stability of a motion could not be determined.
     #[error(transparent)]
     Stability(#[from] StabilityError),

@@ -30,12 +30,9 @@ pub(crate) fn boundaries(
         };
         critical.boundaries(chart)
     };
-    Ok(std::thread::scope(|scope| {
-        let pairs = scope.spawn(|| of(1));
-        let mut found = of(0);
-        found.extend(pairs.join().unwrap_or_default());
-        found
-    }))
+    let (mut found, pairs) = rayon::join(|| of(0), || of(1));
+    found.extend(pairs);
+    Ok(found)
 }
 
 /// Where requirements begin or cease to hold.

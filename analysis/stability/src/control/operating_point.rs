@@ -98,18 +98,6 @@ pub enum OperatingPointError {
     Signal(#[from] SignalError),
 }
 
-impl std::fmt::Debug for OperatingPoint<'_> {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .debug_struct("OperatingPoint")
-            .field("model", &self.model.info().name)
-            .field("x", &self.x)
-            .field("u", &self.u)
-            .field("p", &self.p)
-            .finish()
-    }
-}
-
 impl<'a> OperatingPoint<'a> {
     /// The initial state and the parameters of the spec, inputs zero.
     pub fn new(model: &'a dyn Model) -> Self {

@@ -62,11 +62,8 @@ pub enum RiccatiError {
     )]
     NoStabilisingSolution,
     /// The residual is larger than rounding explains.
-    #[error("the Riccati equation is solved only to a relative residual of {residual:e}")]
-    Inexact {
-        /// Norm of the residual relative to the terms.
-        residual: f64,
-    },
+    #[error("the Riccati equation is solved only to a relative residual of {0:e}")]
+    Inexact(f64),
     /// The eigenvalues of the closed loop could not be computed.
     #[error(transparent)]
     Spectrum(#[from] SpectrumError),
@@ -240,7 +237,7 @@ fn finish(x: Matrix, gain: Matrix, residual: f64, stable: bool) -> Result<Riccat
         return Err(RiccatiError::NoStabilisingSolution);
     }
     if residual.is_nan() || residual > RESIDUAL {
-        return Err(RiccatiError::Inexact { residual });
+        return Err(RiccatiError::Inexact(residual));
     }
     Ok(Riccati { x, gain, residual })
 }

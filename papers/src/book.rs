@@ -5,22 +5,22 @@
 //! part (`figure_7.toml`) stand next to its computation (`figure_7.rs`).
 
 mod claim;
-mod drawing;
 mod equations;
 pub mod euc;
 mod page;
-mod part;
 mod steady_motions;
 pub mod steering;
 
 use appell::Error;
 use appell_analysis::control::operating_point::MotionEquations;
 use appell_models::Shipped;
+use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::model::ModelInfo;
+
+use claim::Part;
 
 pub use claim::{Claim, Picture, Reproduction, Section, Tally};
 pub use page::page;
-use part::Part;
 
 /// A result, or the reason why a computation failed.
 pub(crate) type Result<T> = std::result::Result<T, Error>;
@@ -74,4 +74,35 @@ pub(crate) fn edited<'a>(
         }
         Ok(text.replacen(before, with, 1))
     })
+}
+
+/// A line with a name in the legend.
+pub(crate) fn line(label: &str, x: Vec<f64>, y: Vec<f64>) -> Series {
+    let label = label.to_owned();
+    Series { label, x, y }
+}
+
+/// Lines with the unit of their vertical axis.
+pub(crate) fn panel(unit: &str, series: Vec<Series>) -> Panel {
+    let unit = unit.to_owned();
+    Panel { unit, series }
+}
+
+/// Panels over a common axis.
+pub(crate) fn figure(title: &str, x_label: &str, panels: Vec<Panel>) -> Figure {
+    Figure {
+        title: title.to_owned(),
+        x_label: x_label.to_owned(),
+        panels,
+        marks: Vec::new(),
+        equal_axes: false,
+    }
+}
+
+/// Paths in a plane, in m, with one scale.
+pub(crate) fn paths(title: &str, x_label: &str, series: Vec<Series>) -> Figure {
+    Figure {
+        equal_axes: true,
+        ..figure(title, x_label, vec![panel("m", series)])
+    }
 }

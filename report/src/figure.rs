@@ -5,13 +5,9 @@
 //! with any colour vision; the figure follows the reader's light or dark scheme.
 
 mod area;
-mod axis;
-mod branches;
-mod histogram;
-mod inputs;
 mod map;
 mod plot;
-mod scatter;
+mod results;
 mod surface;
 mod tornado;
 
@@ -19,12 +15,9 @@ use appell_gap::identify::HALF_WIDTH_95;
 use appell_runtime::model::Quantity;
 use appell_runtime::simulate::Breach;
 use appell_runtime::trajectory::Trajectory;
-use area::{Area, INNER, SAMPLE, entry, scale};
-use axis::Axis;
-pub use histogram::Histogram;
+use area::{Area, Axis, INNER, SAMPLE, entry, scale};
 pub use map::{Curve, Map, Stroke};
-pub use plot::{Layer, Look, Plot};
-pub use scatter::Scatter;
+pub use plot::{Histogram, Layer, Look, Plot, Scatter};
 pub use surface::{Patch, Path, Surface};
 pub use tornado::{Lever, Tornado};
 

@@ -3,8 +3,7 @@
 use crate::distribution::Distribution;
 use crate::limits::MAX_CASES;
 use crate::normal;
-use crate::permutation::Permutation;
-use crate::random::Stream;
+use crate::random::{Permutation, Stream};
 use crate::sobol::{self, Coordinate};
 
 /// How the unit cube of the drawn factors is sampled.

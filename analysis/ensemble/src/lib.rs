@@ -19,7 +19,6 @@ pub mod limits;
 pub mod normal;
 #[cfg(feature = "object-store")]
 pub mod objects;
-mod permutation;
 pub mod random;
 pub mod rows;
 pub mod run;

@@ -15,7 +15,6 @@
 
 pub mod attraction;
 pub mod controllability;
-mod echelon;
 pub mod feedback;
 pub mod linear_system;
 pub mod lqr;

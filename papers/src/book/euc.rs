@@ -3,7 +3,7 @@
 //!
 //! | file | part |
 //! |---|---|
-//! | `equations.rs`, `tables.rs` | every numbered equation; tables 1 to 3 |
+//! | `tables.rs` | every numbered equation; tables 1 to 3 |
 //! | `rider.rs` | the spatial unicycle with a rider, four manoeuvres |
 //! | `capture.rs`, `random.rs` | captured rigid bodies; noise |
 //! | `recorded.rs` | the rides as data sets, for `appell diagnose` |
@@ -15,7 +15,6 @@
 //! | `simulated.rs` | findings of the paper on the simulated rides |
 
 mod capture;
-mod equations;
 mod figure_3;
 mod figure_6;
 mod figure_8;
@@ -41,7 +40,7 @@ use super::{Result, Section, failed};
 type Part = (&'static str, fn(&Laboratory) -> Result<Section>);
 
 const PARTS: &[Part] = &[
-    ("equations", equations::section),
+    ("equations", tables::equations),
     ("tables", tables::section),
     ("figures 3 and 4", figure_3::section),
     ("figures 6 and 7", figure_6::section),

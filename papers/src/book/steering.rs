@@ -3,16 +3,13 @@
 //! | file | part of the book |
 //! |---|---|
 //! | `equations.rs` | equations that are formulas, by the identity test; definitions |
-//! | `numbers.rs` | equations whose content are numbers: critical values, circles, ranks |
+//! | `numbers.rs` | equations whose content are numbers: critical values, circles, ranks; results beyond the paper |
 //! | `tables.rs`, `manoeuvres.rs` | gains; closed loops |
 //! | `figure_3.rs` … `figure_8.rs` | figures, and the statements about them |
-//! | `additional.rs` | results beyond the paper |
 
-mod additional;
 pub(super) mod equations;
 mod figure_3;
 mod figure_5;
-mod figure_6;
 mod figure_7;
 mod figure_8;
 mod manoeuvres;
@@ -31,10 +28,10 @@ const PARTS: &[Part] = &[
     ("tables", tables::section),
     ("figure 3", figure_3::section),
     ("figure 5", figure_5::section),
-    ("figure 6", figure_6::section),
+    ("figure 6", figure_5::figure_6),
     ("figure 7", figure_7::section),
     ("figure 8", figure_8::section),
-    ("results beyond the paper", additional::section),
+    ("results beyond the paper", numbers::additional),
 ];
 
 /// The book part by part, with charts of `grid` points along each axis; `making` is called with the

@@ -12,9 +12,8 @@ use appell_spec::mechanism::{
 use serde::Serialize;
 
 use super::link::{self, Link};
-use super::placement::{Placement, frames, points};
-use super::scene::{Scene, set};
-use super::solids::{Solid, solids};
+use super::scene::{Placement, Scene, frames, points, set};
+use super::shapes::{Solid, solids};
 use super::space::{Matrix, Vector, add, dot, length};
 use super::view::View;
 use appell_codegen::mechanics::algebra::Algebra;

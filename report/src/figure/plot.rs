@@ -1,8 +1,7 @@
-//! One quantity over another: points, lines and bands, as SVG.
+//! Figures of one frame: one quantity over another as points, lines and bands; histograms; points in classes.
 
-use super::area::{Area, SAMPLE, entry};
-use super::axis::Axis;
-use super::{FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, STYLE, Series, WIDTH};
+use super::area::{Area, Axis, INNER, SAMPLE, centred, entry};
+use super::{FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, Mark, STYLE, Series, WIDTH};
 use crate::svg::{Document, path, text};
 
 /// Layers over a common pair of axes, drawn in their order.
@@ -120,5 +119,105 @@ impl Layer {
                 format!("{there}{}z", area.line(&back).replacen('M', "L", 1))
             }
         }
+    }
+}
+
+/// Bars of equal width.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Histogram {
+    /// Name and unit of the numbers.
+    pub label: String,
+    /// Name of the counted items.
+    pub counted: String,
+    /// Ends of the first and of the last bar.
+    pub ends: [f64; 2],
+    /// Heights of the bars.
+    pub bars: Vec<u64>,
+    /// Marked numbers.
+    pub marks: Vec<Mark>,
+}
+
+const HISTOGRAM_HEIGHT: f64 = 150.0;
+const BAR_STYLE: &str = include_str!("histogram.css");
+
+impl Histogram {
+    /// The figure as an SVG document.
+    pub fn to_svg(&self) -> String {
+        let heights = self.bars.iter().map(|&count| count as f64);
+        let area = Area {
+            top: HEADER_HEIGHT,
+            height: HISTOGRAM_HEIGHT,
+            x_axis: Axis::tight(self.ends.into_iter()),
+            y_axis: Axis::tight(heights.clone().chain([0.0])),
+        };
+        let bottom = area.bottom();
+        let mut svg = Document::new([WIDTH, bottom + FOOTER_HEIGHT], &[STYLE, BAR_STYLE]);
+        svg.put(&text([LEFT, 16.0]).text(&self.counted));
+        area.grid(&mut svg);
+        let wide = INNER / self.bars.len().max(1) as f64;
+        let bar = |(place, height): (usize, f64)| {
+            let high = area.height * area.y_axis.part(height);
+            let x = LEFT + wide * place as f64;
+            let width = wide - 1.0;
+            format!("M{x:.1} {bottom:.1}v{:.1}h{width:.1}v{high:.1}z", -high)
+        };
+        let bars: String = heights.enumerate().map(bar).collect();
+        svg.put(&path("bar", &bars).empty());
+        for mark in &self.marks {
+            if let Some(x) = area.mark(&mut svg, mark) {
+                svg.put(&centred([x, area.top - 5.0], &mark.about));
+            }
+        }
+        area.name_x(&mut svg, &self.label);
+        svg.finish()
+    }
+}
+
+/// Points in classes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scatter {
+    /// Name and unit of the horizontal and of the vertical axis.
+    pub labels: [String; 2],
+    /// Meaning of the colours.
+    pub about: String,
+    /// Names of the classes, at most five, from low to high; an empty class is drawn too.
+    pub classes: Vec<String>,
+    /// Positions and classes of the points; a point of a class that does not exist is omitted.
+    pub points: Vec<([f64; 2], usize)>,
+}
+
+const SCATTER_HEIGHT: f64 = 320.0;
+const SCATTER_HEAD: f64 = 44.0;
+const SCATTER_STYLE: &str = include_str!("scatter.css");
+
+impl Scatter {
+    /// The figure as an SVG document.
+    pub fn to_svg(&self) -> String {
+        let values = |axis: usize| self.points.iter().map(move |(point, _)| point[axis]);
+        let area = Area {
+            top: SCATTER_HEAD + HEADER_HEIGHT,
+            height: SCATTER_HEIGHT,
+            x_axis: Axis::padded(values(0)),
+            y_axis: Axis::padded(values(1)),
+        };
+        let height = area.bottom() + FOOTER_HEIGHT;
+        let mut svg = Document::new([WIDTH, height], &[STYLE, SCATTER_STYLE]);
+        svg.put(&text([LEFT, 16.0]).text(&self.about));
+        svg.put(&text([LEFT, area.top - 9.0]).text(&self.labels[1]));
+        area.grid(&mut svg);
+        let last = self.classes.len().saturating_sub(1).max(1);
+        let mut right = LEFT;
+        for (class, name) in self.classes.iter().enumerate() {
+            // The ends of the scale, whatever lies between.
+            let style = format!("point k{}", (4 * class + last / 2) / last);
+            let own = self.points.iter().filter(|(_, own)| *own == class);
+            let dots = area.dots(own.map(|(point, _)| *point));
+            svg.put(&path(&style, &dots).empty());
+            let sample = format!("M{:.1} {:.1}h0", right + 5.0, SCATTER_HEAD - 10.0);
+            let place = [right + 13.0, SCATTER_HEAD - 6.0];
+            right = entry(&mut svg, &path(&style, &sample).empty(), place, name);
+        }
+        area.name_x(&mut svg, &self.labels[0]);
+        svg.finish()
     }
 }

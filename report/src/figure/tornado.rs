@@ -1,7 +1,6 @@
 //! Tornado diagram of the sensitivities of a number: one bar a factor, the longest on top.
 
-use super::area::{SAMPLE, centred, entry, numbers};
-use super::axis::{Axis, number};
+use super::area::{Axis, SAMPLE, centred, entry, number, numbers};
 use super::{FOOTER_HEIGHT, RIGHT, STYLE, WIDTH};
 use crate::svg::{Document, Element, path, text};
 

@@ -3,8 +3,7 @@
 use appell_spec::{Code, shown};
 use toml::de::DeTable;
 
-use super::read::Reader;
-use super::value::{Placed, Text};
+use super::read::{Placed, Reader, Text};
 use crate::limits::MAX_PARTICLES;
 
 /// An entry of `[keep]`.

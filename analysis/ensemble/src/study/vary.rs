@@ -3,8 +3,7 @@
 use appell_spec::Code;
 use toml::de::DeTable;
 
-use super::read::Reader;
-use super::value::{Placed, Text};
+use super::read::{Placed, Reader, Text};
 use crate::limits::{MAX_VALUES, MAX_VARIANTS};
 
 /// Entries of `[vary]` that choose between specs and between laws.

@@ -8,10 +8,9 @@ use rayon::iter::{
     ParallelIterator as _,
 };
 
-use super::boundary;
 use super::grid_continuation::GridContinuation;
 use super::plane::{Axis, Plane};
-use super::{Cell, Chart, ChartError, MOST};
+use super::{Cell, Chart, ChartError, MOST, boundary};
 use crate::branch::{BranchError, Requirement};
 use crate::stability::critical::REST;
 use crate::stability::{Verdict, essential_matrix, zero_count};

@@ -6,11 +6,10 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::LinearSystem;
 use super::lqr::{self, Regulator};
 use super::placement::{Placement, PlacementError};
 use super::riccati::RiccatiError;
-use super::robust_placement;
+use super::{LinearSystem, robust_placement};
 
 /// Longest delay in sampling periods.
 const MOST_PENDING: usize = 100;

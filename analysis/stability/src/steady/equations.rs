@@ -3,10 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Condition;
 use super::cyclic::Structure;
-use super::differences;
 use super::newton::Equations;
+use super::{Condition, differences};
 use crate::point::Point;
 use crate::term::Term;
 use appell_runtime::model::Model;

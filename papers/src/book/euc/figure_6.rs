@@ -7,8 +7,7 @@ use super::laboratory::{Laboratory, Session};
 use super::rider::Manoeuvre;
 use super::simulated::simulated;
 use super::torque::{Curve, Planar, Torques};
-use crate::book::drawing::{figure, line, panel};
-use crate::book::{Part, Result, Section, failed};
+use crate::book::{Part, Result, Section, failed, figure, line, panel};
 
 /// Channels of the smoothed rides: pitch of the body and of the rider.
 const GAMMA: usize = 1;

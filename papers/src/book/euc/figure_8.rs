@@ -4,8 +4,7 @@ use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
 use super::simulated::simulated;
 use super::torque::{Curve, Planar};
-use crate::book::drawing::{figure, line, panel};
-use crate::book::{Part, Result, Section};
+use crate::book::{Part, Result, Section, figure, line, panel};
 
 /// The curves of a manoeuvre: three and two degrees of freedom.
 struct Curves {

@@ -13,8 +13,9 @@ use nalgebra::DMatrix;
 use super::laboratory::{Laboratory, PERFECT, REAL, Session};
 use super::rider::Manoeuvre;
 use super::simulated::simulated;
-use crate::book::drawing::{figure, line, panel};
-use crate::book::{Part, Result, Section, computation, failed, parameter, shipped};
+use crate::book::{
+    Part, Result, Section, computation, failed, figure, line, panel, parameter, shipped,
+};
 
 /// Heights of the profiles, relative to the estimate.
 const PROFILE: [f64; 9] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5];

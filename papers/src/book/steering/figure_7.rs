@@ -4,9 +4,8 @@ use appell_analysis::{Branch, loci};
 use appell_report::figure::{Figure, Mark, Panel, Series};
 use appell_spectra::spectrum::Complex;
 
-use crate::book::drawing::{figure, line, panel};
 use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, first_critical};
-use crate::book::{Part, Result, Section};
+use crate::book::{Part, Result, Section, figure, line, panel};
 
 /// Pitch rates that are drawn, in rad/s.
 const RANGE: [f64; 2] = [0.05, 8.0];

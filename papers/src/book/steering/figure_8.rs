@@ -4,9 +4,8 @@ use appell_report::figure::{Figure, Series};
 use appell_runtime::Trajectory;
 
 use super::manoeuvres::{Path, Run, largest};
-use crate::book::drawing::{figure, line, panel, paths};
 use crate::book::steady_motions::degrees;
-use crate::book::{Part, Result, Section, failed};
+use crate::book::{Part, Result, Section, failed, figure, line, panel, paths};
 
 /// A run: manoeuvre, final place and yaw angle to nine digits, largest force.
 struct Wanted {

@@ -1,8 +1,8 @@
 //! The linear equations about a steady motion, and their characteristic polynomial.
 
 use super::super::{Block, Equation, Letter, Math, Section, Span, Writer};
+use super::equations::raised;
 use super::phrases::{formula, headed, listed, math, sentence, with, words};
-use super::solution::raised;
 use appell_codegen::linearisation::{Characteristic, Linearisation};
 use appell_codegen::symbolic::{Expr, Graph};
 

@@ -1,16 +1,20 @@
-//! A load: its vector, frame, point of application, reaction, and virtual power.
+//! Loads: vector, frame, point of application, reaction, virtual power; the pseudo-forces of all of them.
 
+use appell_codegen::mechanics::loads::{AppliedLoad, generalized_forces};
+use appell_codegen::mechanics::time::TimeDerivative;
+use appell_codegen::symbolic::{Expr, Graph};
 use appell_spec::expr::{Expr as Spec, ExprKind, Quantity};
 use appell_spec::mechanism::{
     BodyId, Connection, CoordinateId, FrameId, GROUND, Load, LoadKind, PointId, Spring,
 };
 
-use super::super::writer::Writer;
-use super::super::{Letter, Math, Span};
-use super::phrases::{equality, listed, math, words};
+use super::super::arrange::signed;
+use super::super::{About, Block, Equation, Letter, Math, Section, Span, Writer};
+use super::energy::numbered;
+use super::phrases::{
+    equality, formula, headed, introduced, listed, math, sentence, with, with_formulas, words,
+};
 use super::placement::{from_to, lowered};
-use appell_codegen::mechanics::time::TimeDerivative;
-use appell_codegen::symbolic::{Expr, Graph};
 
 /// `F_drive = [0, u, 0] tilted at A, −F_drive at G; δP_drive = F_drive · (δv_A − δv_G)`
 pub(super) fn statement(w: &mut Writer<'_>, load: &Load) -> Vec<Span> {
@@ -312,4 +316,64 @@ fn difference(w: &mut Writer<'_>, place: Expr, relaxed: &Spec) -> Math {
     let relaxed = lowered(w, relaxed);
     let stretch = w.graph().sub(place, relaxed);
     w.set(stretch)
+}
+
+/// The virtual power of every load, and their sum.
+pub(super) fn section(w: &mut Writer<'_>) -> Section {
+    let mut blocks = load_by_load(w);
+    let mut equations = Vec::new();
+    for (i, force) in w.derivation.forces.clone().into_iter().enumerate() {
+        let right = w.explicit(force);
+        equations.push(Equation::new(numbered("Π", i), right).about(About::Force(i)));
+    }
+    blocks.extend(with(
+        w,
+        "The pseudo-forces are the coefficients of the virtual velocities:",
+        equations,
+    ));
+    headed("Pseudo-forces Π", blocks)
+}
+
+fn load_by_load(w: &mut Writer<'_>) -> Vec<Block> {
+    if w.derivation.loads.is_empty() {
+        return vec![sentence("No load acts.")];
+    }
+    let mut blocks = vec![with_formulas(
+        "The virtual power of the forces F and torques T is {}. Load by load:",
+        [formula("δP = { Σ *F · δ*v } + { Σ *T · δ*ω } = Σ Π_i δω_i")],
+    )];
+    let applied = w.derivation.loads.clone();
+    for (load, (id, item)) in applied.iter().zip(w.mechanism.loads.entries()) {
+        let mut what = vec![introduced(&item.name, &item.about, item.line), words(": ")];
+        what.extend(statement(w, item));
+        what.push(words("."));
+        blocks.extend(w.definitions());
+        blocks.push(Block::Sentence(what));
+        let power = power_of(w, load);
+        let equation = Equation::new(virtual_power(item), power).about(About::Load(id));
+        blocks.extend(with(w, "", vec![equation]));
+    }
+    blocks
+}
+
+/// `Σ Πᵢ δωᵢ` of one load.
+fn power_of(w: &mut Writer<'_>, load: &AppliedLoad) -> Math {
+    let speeds = w.derivation.symbols.speeds.clone();
+    let load = std::slice::from_ref(load);
+    let forces = generalized_forces(&mut w.derivation.algebra, load, &speeds);
+    let mut terms = Vec::new();
+    for (k, force) in forces.into_iter().enumerate() {
+        if force == Graph::ZERO {
+            continue;
+        }
+        let along = Math::Letter(w.speed(k).before('δ'));
+        let (minus, force) = signed(w.explicit(force));
+        let factors = if force.is_integer("1") {
+            vec![along]
+        } else {
+            vec![force, along]
+        };
+        terms.push((minus, Math::product(factors)));
+    }
+    Math::sum(terms)
 }

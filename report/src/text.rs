@@ -97,7 +97,6 @@ pub(crate) fn exponent(value: f64) -> i32 {
 
 /// A table with its heading and notes.
 pub(crate) struct Table {
-    /// Its heading.
     pub(crate) heading: String,
     /// Its rows, the first one with the names of the columns.
     pub(crate) rows: Vec<Vec<String>>,

@@ -262,7 +262,6 @@ impl Part {
         })
     }
 
-    /// The statement of a key.
     pub(crate) fn statement(&self, key: &str) -> Result<Statement> {
         let statement = self.texts.statements.get(key);
         let statement = statement.ok_or_else(|| failed(&format!("no statement `{key}`")))?;

@@ -261,7 +261,6 @@ pub(super) struct TextBox {
 }
 
 impl TextBox {
-    /// One line.
     pub(super) fn line(text: &str) -> Self {
         Self {
             lines: vec![text.to_owned()],
@@ -280,7 +279,6 @@ impl TextBox {
         self.lines.len()
     }
 
-    /// Its lines.
     pub(super) fn lines(&self) -> impl Iterator<Item = &str> {
         self.lines.iter().map(String::as_str)
     }

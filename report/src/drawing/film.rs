@@ -383,7 +383,6 @@ struct Values<'m> {
     inputs: Vec<SymbolId>,
     /// Empty where no value depends on them.
     rates: Vec<SymbolId>,
-    /// By symbol.
     of_symbols: Vec<f64>,
 }
 

@@ -114,7 +114,6 @@ fn close(program: Program, values: &mut [f64]) -> bool {
     closed.is_ok()
 }
 
-/// Sets the values of symbols.
 pub(super) fn set(values: &mut [f64], symbols: &[SymbolId], numbers: &[f64]) {
     for (symbol, number) in symbols.iter().zip(numbers) {
         values[index(*symbol)] = *number;
@@ -130,7 +129,6 @@ const FARTHEST: f64 = 1e100;
 
 /// Points and frames as expressions.
 pub(super) struct Placement {
-    /// By point.
     points: List<PointId, Vec3>,
     /// By frame: its three axes.
     frames: List<FrameId, [Vec3; 3]>,

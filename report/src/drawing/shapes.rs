@@ -18,7 +18,6 @@ const EQUAL: f64 = 1e-9;
 pub(super) struct Stroke {
     /// Its style.
     pub(super) class: &'static str,
-    /// Its corners.
     pub(super) corners: Vec<Vector>,
     /// Its tooltip.
     pub(super) about: String,
@@ -90,7 +89,6 @@ fn round(place: impl Fn(f64, f64) -> Vector) -> Vec<Vector> {
 pub(super) struct Axes {
     /// Their origin.
     pub(super) at: Vector,
-    /// Their directions.
     pub(super) directions: Matrix,
     /// Names of the frames.
     pub(super) names: String,

@@ -104,7 +104,6 @@ fn reading(report: &Report) -> Markup {
     }
 }
 
-/// Lines as sentences.
 fn in_sentences(lines: &[String]) -> String {
     let lines = lines.iter();
     let lines = lines.map(|line| format!("{}.", capitalised(&line.replace('`', ""))));

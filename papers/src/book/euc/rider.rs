@@ -53,7 +53,6 @@ const SWAY: [f64; 2] = [3.0, 2.0];
 /// Angular frequencies of sways in rad/s.
 const FREQUENCIES: [f64; 4] = [2.0, 3.3, 5.0, 7.5];
 
-/// A manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Manoeuvre {
     ConstantSpeed,

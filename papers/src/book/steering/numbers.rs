@@ -180,7 +180,6 @@ fn references(part: &mut Part) -> Result<()> {
     Ok(())
 }
 
-/// The additional results.
 pub(super) fn additional(_: usize) -> Result<Section> {
     let mut part = Part::read(include_str!("additional.toml"))?;
     hoop(&mut part)?;

@@ -6,8 +6,7 @@ use std::f64::consts::PI;
 use appell_runtime::Trajectory;
 use appell_runtime::model::{At, Model};
 use appell_spec::mechanism::{
-    BodyId, Components, ConstraintKind, FrameId, GROUND, LoadId, LoadKind, Mechanism, ORIGIN,
-    PointId,
+    BodyId, Components, FrameId, GROUND, LoadId, LoadKind, Mechanism, ORIGIN, PointId,
 };
 use serde::Serialize;
 
@@ -204,12 +203,8 @@ impl FilmMaker {
 
 /// Points at which constraints hold bodies.
 fn contacts(mechanism: &Mechanism) -> Vec<PointId> {
-    let held = mechanism.constraints.iter().filter_map(|c| match c.kind {
-        ConstraintKind::Rolling { contact, .. } => Some(contact),
-        ConstraintKind::FixedVelocity { point, .. } => Some(point),
-        ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => None,
-    });
-    let held: BTreeSet<PointId> = held.collect();
+    let held = mechanism.constraints.iter().filter_map(link::held);
+    let held: BTreeSet<PointId> = held.map(|(_, point)| point).collect();
     held.into_iter().collect()
 }
 

@@ -1,7 +1,8 @@
 //! Links: points with their reference points, frames with points.
 
 use appell_spec::mechanism::{
-    Connection, FrameId, GROUND, Load, LoadKind, Mechanism, ORIGIN, Point, PointId,
+    BodyId, Connection, Constraint, ConstraintKind, FrameId, GROUND, Load, LoadKind, Mechanism,
+    ORIGIN, Point, PointId,
 };
 use serde::Serialize;
 
@@ -65,6 +66,15 @@ pub(super) fn links(mechanism: &Mechanism) -> impl Iterator<Item = Link> {
     };
     let placed = mechanism.points.entries().filter_map(placed);
     placed.chain(mechanism.loads.iter().filter_map(connection))
+}
+
+/// The point at which a constraint holds a body, and the body, where it is given.
+pub(super) fn held(constraint: &Constraint) -> Option<(Option<BodyId>, PointId)> {
+    match constraint.kind {
+        ConstraintKind::Rolling { body, contact, .. } => Some((Some(body), contact)),
+        ConstraintKind::FixedVelocity { body, point, .. } => Some((body, point)),
+        ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => None,
+    }
 }
 
 /// The point at which the axes of a frame are drawn: the centre of its body, or the point from

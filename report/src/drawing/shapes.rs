@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use appell_spec::mechanism::{Body, BodyId, ConstraintKind, Mechanism, PointId};
+use appell_spec::mechanism::{Body, BodyId, Mechanism, PointId};
 
 use super::link::{self, Link, LinkKind};
 use super::scene::{Inertia, Scene};
@@ -206,20 +206,10 @@ pub(super) fn ball(radius: f64) -> Matrix {
 
 /// The rolling contact of a body: a constrained point that does not move with it.
 fn contact(mechanism: &Mechanism, id: BodyId) -> Option<PointId> {
-    let held = mechanism.constraints.iter().filter_map(|c| match c.kind {
-        ConstraintKind::Rolling { body, contact, .. } => Some((body, contact)),
-        ConstraintKind::FixedVelocity {
-            body: Some(body),
-            point,
-            ..
-        } => Some((body, point)),
-        ConstraintKind::FixedVelocity { body: None, .. }
-        | ConstraintKind::Velocity { .. }
-        | ConstraintKind::Position { .. } => None,
-    });
+    let held = mechanism.constraints.iter().filter_map(link::held);
     let frame = mechanism.bodies[id].frame;
-    let rolls = |&(body, point): &(BodyId, PointId)| {
-        body == id && Some(mechanism.points[point].frame) != frame
+    let rolls = |&(body, point): &(Option<BodyId>, PointId)| {
+        body == Some(id) && Some(mechanism.points[point].frame) != frame
     };
     held.filter(rolls).map(|(_, point)| point).next()
 }

@@ -3,8 +3,8 @@
 use crate::book::{Part, Result, Section, computation, rows, state};
 use crate::steering::{GAINS, MISPRINT, OUTPUTS};
 use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
+use appell_analysis::control::placement;
 use appell_analysis::control::reduction::{Subsystem, reduce};
-use appell_analysis::control::robust_placement;
 use nalgebra::{Complex, DMatrix};
 
 use crate::book::claim::shown;
@@ -53,7 +53,7 @@ pub(super) fn steered(speed: f64, outputs: &[&str]) -> Result<Subsystem> {
 /// Gains that place all poles of the outputs.
 pub(super) fn placed(speed: f64, outputs: &[&str]) -> Result<DMatrix<f64>> {
     let poles = vec![Complex::from(POLE); outputs.len()];
-    let placed = robust_placement::place(&steered(speed, outputs)?.system, &poles);
+    let placed = placement::place(&steered(speed, outputs)?.system, &poles);
     Ok(placed.map_err(computation)?.gain)
 }
 

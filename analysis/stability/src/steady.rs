@@ -9,10 +9,12 @@ pub(crate) mod path;
 pub(crate) mod starts;
 pub(crate) mod turning;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::point::Point;
+use crate::stability::essential_matrix;
 use crate::term::Term;
+use appell_runtime::linearise::Undetermined;
 use appell_runtime::model::{Model, ModelInfo, Quantity};
 use appell_spectra::singular::Singular;
 use cyclic::Structure;
@@ -83,6 +85,14 @@ impl<'a> SteadyProblem<'a> {
     /// Essential and ignorable states.
     pub fn structure(&self) -> &Structure {
         &self.structure
+    }
+
+    /// A of a motion in its independent essential states, with their indices in the model.
+    pub(super) fn essential_matrix(
+        &self,
+        point: &Point,
+    ) -> Result<(Vec<usize>, DMatrix<f64>), Undetermined> {
+        essential_matrix(self.model, &self.structure, point)
     }
 
     /// Where searches begin; inputs and parameters that are not free have these values.

@@ -230,6 +230,9 @@ struct Texts {
     /// Definitions and laws: place, content, and the place of their use.
     #[serde(default)]
     definitions: Vec<[String; 3]>,
+    /// A table of parameters: name, unit as printed, value in SI.
+    #[serde(default)]
+    parameters: Vec<(String, String, f64)>,
 }
 
 /// A part: its texts, and the claims and pictures so far.
@@ -309,17 +312,13 @@ impl Part {
         Ok(())
     }
 
-    /// Values of a table of parameters: name, the unit as printed, value in SI.
-    pub(crate) fn parameters(
-        &mut self,
-        info: &ModelInfo,
-        table: &[(&str, &str, f64)],
-    ) -> Result<()> {
-        for (name, unit, value) in table {
-            let index = info.parameter_index(name);
+    /// The values of the parameters.
+    pub(crate) fn parameters(&mut self, info: &ModelInfo) -> Result<()> {
+        for (name, unit, value) in self.texts.parameters.clone() {
+            let index = info.parameter_index(&name);
             let found = index.map_or(f64::NAN, |index| info.parameters[index].value);
             self.set("parameter", format!("{name} = {value}{unit}"));
-            self.number("parameter", [*value, found])?;
+            self.number("parameter", [value, found])?;
         }
         Ok(())
     }

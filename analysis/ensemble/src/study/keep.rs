@@ -3,6 +3,7 @@
 use appell_spec::{Code, shown};
 use toml::de::DeTable;
 
+use super::lacks;
 use super::read::{Placed, Reader, Text};
 use crate::limits::MAX_PARTICLES;
 
@@ -105,8 +106,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             about,
         });
     }
-    let keep = table.get("keep").map(|keep| keep.get_ref().as_table());
-    if keep.is_none_or(|keep| keep.is_some_and(DeTable::is_empty)) {
+    if lacks(table, "keep") {
         let help =
             "write the quantities to keep under `[keep]`, such as `reached = { end = \"x\" }`";
         read.tell(Code::MissingSection, "nothing is kept", 0..0, help);

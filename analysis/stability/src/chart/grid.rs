@@ -13,7 +13,7 @@ use super::plane::{Axis, Plane};
 use super::{Cell, Chart, ChartError, MOST, boundary};
 use crate::branch::{BranchError, Requirement};
 use crate::stability::critical::REST;
-use crate::stability::{Verdict, essential_matrix, zero_count};
+use crate::stability::{Verdict, zero_count};
 use crate::steady::SteadyProblem;
 use appell_spectra::spectrum::Eigenvalues;
 
@@ -91,8 +91,7 @@ fn seeds(plane: &Plane<'_>, starts: usize) -> Result<(Vec<DVector<f64>>, usize),
             match here.solve_isolated(starts) {
                 Ok(motions) => {
                     for motion in motions {
-                        let (model, structure) = (problem.model(), problem.structure());
-                        let (_, matrix) = essential_matrix(model, structure, &motion.point)?;
+                        let (_, matrix) = problem.essential_matrix(&motion.point)?;
                         zeros = zeros.min(zero_count(&matrix)?);
                         seeds.push(plane.equations.unknowns_of(&motion.point));
                     }
@@ -161,7 +160,7 @@ impl Judge<'_> {
     fn cell(&self, z: &DVector<f64>, solver: &mut Eigenvalues) -> Option<Cell> {
         let (problem, equations) = (self.plane.problem, &self.plane.equations);
         let (model, point) = (problem.model(), equations.point(z));
-        let (states, matrix) = essential_matrix(model, problem.structure(), &point).ok()?;
+        let (states, matrix) = problem.essential_matrix(&point).ok()?;
         if solver.size() != states.len() {
             *solver = Eigenvalues::new(states.len());
         }

@@ -14,19 +14,6 @@ const BODIES: [&str; 14] = [
     "H", "CHR", "CHL", "UAR", "UAL", "LAR", "LAL", "HR", "HL", "TR", "TL", "LR", "LL", "E",
 ];
 
-/// Values of table 3 in SI. The height is to be identified.
-const PARAMETERS: [(&str, &str, f64); 9] = [
-    ("R", "", 0.2),
-    ("m", "", 65.0),
-    ("m_0", "", 13.0),
-    ("m_w", "", 3.0),
-    ("J", "", 16.6),
-    ("J_w", "", 0.12),
-    ("J_0", "", 0.5),
-    ("h_0", "", 0.075),
-    ("l_0", "", 0.05),
-];
-
 pub(super) fn section(laboratory: &Laboratory) -> Result<Section> {
     let mut part = Part::read(include_str!("tables.toml"))?;
     let runs = |manoeuvre: &Manoeuvre| format!("{} {}", manoeuvre.name(), manoeuvre.runs());
@@ -47,7 +34,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section> {
     );
     part.found("mass", ours, true)?;
 
-    part.parameters(shipped("euc_3dof")?.model.info(), &PARAMETERS)?;
+    part.parameters(shipped("euc_3dof")?.model.info())?;
     Ok(part.section())
 }
 

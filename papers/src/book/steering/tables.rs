@@ -22,14 +22,6 @@ const LETTERS: [(&str, &str); 6] = [
     ("P_y", "N/m"),
 ];
 
-/// Table I: letter in the spec, unit, value.
-const PARAMETERS: [(&str, &str, f64); 4] = [
-    ("m", " kg", 10.0),
-    ("m0", " kg", 5.0),
-    ("R", " m", 0.3),
-    ("g", " m/s²", 9.81),
-];
-
 /// The linearised unicycle in straight rolling at a speed in m/s, and indices of the outputs among
 /// its states.
 pub(super) fn straight(speed: f64, outputs: &[&str]) -> Result<(MotionEquations, Vec<usize>)> {
@@ -60,8 +52,7 @@ pub(super) fn placed(speed: f64, outputs: &[&str]) -> Result<DMatrix<f64>> {
 /// The tables.
 pub(super) fn section(_: usize) -> Result<Section> {
     let mut part = Part::read(include_str!("tables.toml"))?;
-    let info = Mechanism::shipped("unicycle")?.0.info();
-    part.parameters(info, &PARAMETERS)?;
+    part.parameters(Mechanism::shipped("unicycle")?.0.info())?;
     for column in GAINS.iter() {
         let outputs = &OUTPUTS[..column.printed.len()];
         part.set("table", &column.table);

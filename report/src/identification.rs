@@ -429,13 +429,8 @@ pub fn figure(set: &DataSet, answer: &Answer) -> Figure {
             errors("error, fitted".to_owned(), &trace.fitted),
         ];
         let unit = channel.map_or("", |channel| &channel.unit.text);
-        [motion, errors].map(|series| Panel {
-            unit: unit.to_owned(),
-            series,
-        })
+        [motion, errors].map(|series| Panel::new(unit, series))
     });
-    Figure::over_t(
-        format!("{}: held-out runs", set.mechanism.name),
-        panels.chain(drifting(answer)).collect(),
-    )
+    let title = format!("{}: held-out runs", set.mechanism.name);
+    Figure::new(title, "t [s]", panels.chain(drifting(answer)).collect())
 }

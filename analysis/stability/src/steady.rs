@@ -100,11 +100,6 @@ impl<'a> SteadyProblem<'a> {
         &self.base
     }
 
-    /// The conditions on states, rates, outputs and freed quantities.
-    pub fn conditions(&self) -> &[Condition] {
-        &self.conditions
-    }
-
     /// Inputs and parameters that are left free.
     pub fn free_terms(&self) -> &[Term] {
         &self.free

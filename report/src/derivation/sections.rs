@@ -3,7 +3,6 @@
 mod constraints;
 mod energy;
 mod equations;
-mod jacobians;
 mod linear;
 mod loads;
 mod phrases;
@@ -41,7 +40,7 @@ pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Outcome<Vec
         sections.push(equations::energies(w));
     }
     if stage >= Stage::Jacobians {
-        sections.push(jacobians::section(w));
+        sections.push(linear::jacobians(w));
     }
     if stage >= Stage::All {
         sections.extend(constraints::forces(w)?);

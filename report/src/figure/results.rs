@@ -39,10 +39,7 @@ impl Figure {
                 let y = y.map(|value| quantity.to_unit(value)).collect();
                 Series::new(label, &parameter(info, along, branch), y)
             });
-            Panel {
-                unit: quantity.unit.to_string(),
-                series: series.collect(),
-            }
+            Panel::new(quantity.unit.as_ref(), series.collect())
         };
         let panels = terms.iter().filter(drawn).map(panel).collect();
         along_branches(info, along, branches, panels)
@@ -67,10 +64,7 @@ impl Figure {
                 let y = values.map(|value| value.im).collect();
                 im.push(Series::new(label("im"), &x, y));
             }
-            [re, im].map(|series| Panel {
-                unit: "1/s".to_owned(),
-                series,
-            })
+            [re, im].map(|series| Panel::new("1/s", series))
         });
         along_branches(info, along, branches, panels.collect())
     }
@@ -98,12 +92,10 @@ fn along_branches(
         let about = format!("{} = {x:.14} {}", quantity.name, quantity.unit);
         Mark { x, about }
     });
+    let x_label = format!("{} [{}]", quantity.name, quantity.unit);
     Figure {
-        title: info.title.to_string(),
-        x_label: format!("{} [{}]", quantity.name, quantity.unit),
-        panels,
         marks: marks.collect(),
-        equal_axes: false,
+        ..Figure::new(info.title.as_ref(), x_label, panels)
     }
 }
 
@@ -127,9 +119,7 @@ impl Figure {
                 )
             })
         });
-        Self::over_t(
-            format!("{}: inputs of recorded motions", info.name),
-            panels.collect(),
-        )
+        let title = format!("{}: inputs of recorded motions", info.name);
+        Self::new(title, "t [s]", panels.collect())
     }
 }

@@ -194,19 +194,13 @@ impl<'a> OperatingPoint<'a> {
         let n = rates.len();
         let u = self.inputs_at(0.0)?;
         let (x, p) = (self.x.clone(), self.p.clone());
-        let none = || (DMatrix::zeros(n, n), rates.to_vec());
-        if self.model.dependent_coordinates().is_empty() {
-            return Ok(none());
-        }
         // Equations that depend on time have no symmetric rotations here.
-        let structure = Structure::of(self.model, &Point { x, u, p });
-        Ok(structure.map_or_else(
-            |_| none(),
-            |structure| {
-                let turning = structure.turning;
-                (turning.turn(&self.x, rates), turning.still(&self.x, rates))
-            },
-        ))
+        if !self.model.dependent_coordinates().is_empty()
+            && let Ok(Structure { turning, .. }) = Structure::of(self.model, &Point { x, u, p })
+        {
+            return Ok((turning.turn(&self.x, rates), turning.still(&self.x, rates)));
+        }
+        Ok((DMatrix::zeros(n, n), rates.to_vec()))
     }
 
     fn check(&self) -> Result<(), OperatingPointError> {

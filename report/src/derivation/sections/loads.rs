@@ -216,45 +216,33 @@ fn pulling(w: &Writer<'_>, load: &Load, ends: [PointId; 2], tension: Math) -> Sa
 
 /// A generalised force on a coordinate.
 fn along(w: &mut Writer<'_>, load: &Load, q: CoordinateId, force: Math) -> Said {
-    let letter = Math::Letter(Letter::plain("F").below(&load.name));
-    let [coordinate, rate] = [
-        w.derivation.symbols.coordinates[q.index()],
-        w.derivation.symbols.rates[q.index()],
-    ]
-    .map(|symbol| w.letter(symbol));
-    let what = vec![
-        equality(letter.clone(), force),
-        words(" along "),
-        math(Math::Letter(coordinate)),
-    ];
-    (
-        what,
-        Math::Row(vec![letter, Math::Letter(rate.before('δ'))]),
-    )
+    let symbols = &w.derivation.symbols;
+    let [coordinate, rate] = [symbols.coordinates[q.index()], symbols.rates[q.index()]];
+    let coordinate = Math::Letter(w.letter(coordinate));
+    let rate = Math::Letter(w.letter(rate).before('δ'));
+    let (letter, what) = acting(load, "F", force, " along ", coordinate);
+    (what, Math::Row(vec![letter, rate]))
 }
 
 /// A generalised force on a pseudo-velocity, or on a combination of velocities.
 fn along_velocity(w: &mut Writer<'_>, load: &Load, velocity: &Spec, force: Math) -> Said {
-    let letter = Math::Letter(Letter::plain("F").below(&load.name));
     let velocity = factor(w, velocity);
-    let what = vec![
-        equality(letter.clone(), force),
-        words(" along "),
-        math(velocity.clone()),
-    ];
+    let (letter, what) = acting(load, "F", force, " along ", velocity.clone());
     (what, Math::Row(vec![letter, velocity]))
 }
 
 /// A torque along an angle between two frames.
 fn along_angle(w: &mut Writer<'_>, load: &Load, angle: Expr, rate: Expr, torque: Math) -> Said {
-    let letter = Math::Letter(Letter::plain("T").below(&load.name));
     let [angle, rate] = [angle, rate].map(|expr| w.set(expr));
-    let what = vec![
-        equality(letter.clone(), torque),
-        words(" along the angle "),
-        math(angle),
-    ];
+    let (letter, what) = acting(load, "T", torque, " along the angle ", angle);
     (what, Math::product(vec![letter, rate]))
+}
+
+/// The letter of a load, and `F_drive = u along x`.
+fn acting(load: &Load, base: &str, force: Math, how: &str, along: Math) -> (Math, Vec<Span>) {
+    let letter = Math::Letter(Letter::plain(base).below(&load.name));
+    let what = vec![equality(letter.clone(), force), words(how), math(along)];
+    (letter, what)
 }
 
 /// `letter = [x, y, z] frame`

@@ -25,6 +25,21 @@ pub use page::page;
 /// A result, or the reason why a computation failed.
 pub(crate) type Result<T> = std::result::Result<T, Error>;
 
+/// Parts of a book, made from what they share after some steps that are done; `making` is called with the current part
+/// and the progress.
+fn made<C: Copy>(
+    parts: &[(&str, fn(C) -> Result<Section>)],
+    shared: C,
+    done: usize,
+    mut making: impl FnMut(&str, usize, usize),
+) -> Result<Vec<Section>> {
+    let sections = parts.iter().enumerate().map(|(number, (name, make))| {
+        making(name, done + number, done + parts.len());
+        make(shared)
+    });
+    sections.collect()
+}
+
 /// A shipped mechanism.
 pub(crate) fn shipped(name: &str) -> Result<&'static Shipped> {
     Shipped::find(name).ok_or_else(|| failed(&format!("no shipped mechanism `{name}`")))
@@ -82,27 +97,10 @@ pub(crate) fn line(label: &str, x: Vec<f64>, y: Vec<f64>) -> Series {
     Series { label, x, y }
 }
 
-/// Lines with the unit of their vertical axis.
-pub(crate) fn panel(unit: &str, series: Vec<Series>) -> Panel {
-    let unit = unit.to_owned();
-    Panel { unit, series }
-}
-
-/// Panels over a common axis.
-pub(crate) fn figure(title: &str, x_label: &str, panels: Vec<Panel>) -> Figure {
-    Figure {
-        title: title.to_owned(),
-        x_label: x_label.to_owned(),
-        panels,
-        marks: Vec::new(),
-        equal_axes: false,
-    }
-}
-
 /// Paths in a plane, in m, with one scale.
 pub(crate) fn paths(title: &str, x_label: &str, series: Vec<Series>) -> Figure {
     Figure {
         equal_axes: true,
-        ..figure(title, x_label, vec![panel("m", series)])
+        ..Figure::new(title, x_label, vec![Panel::new("m", series)])
     }
 }

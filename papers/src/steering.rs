@@ -9,11 +9,13 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
+use crate::equations::items;
+
 pub use crate::equations::Equation;
 
 /// The equations in the order of the paper.
 pub static EQUATIONS: LazyLock<Vec<Equation>> =
-    LazyLock::new(|| Equation::read(include_str!("steering.toml")));
+    LazyLock::new(|| items(include_str!("steering.toml")).unwrap());
 
 /// A column of table II or III.
 #[derive(Debug, Deserialize)]
@@ -44,11 +46,5 @@ pub const OUTPUTS: [&str; 6] = ["omega_1", "theta", "sigma", "r", "psi", "y_G"];
 pub const MISPRINT: [&str; 2] = ["536.67", "563.67"];
 
 /// The columns of both tables.
-pub static GAINS: LazyLock<Vec<Gains>> = LazyLock::new(|| {
-    #[derive(Deserialize)]
-    struct File {
-        gains: Vec<Gains>,
-    }
-    let file: File = toml::from_str(include_str!("gains.toml")).unwrap();
-    file.gains
-});
+pub static GAINS: LazyLock<Vec<Gains>> =
+    LazyLock::new(|| items(include_str!("gains.toml")).unwrap());

@@ -16,13 +16,10 @@ mod manoeuvres;
 mod numbers;
 mod tables;
 
-use super::{Result, Section};
+use super::{Result, Section, made};
 
-/// A part of the book: its name for progress messages, and its function of the number of grid
-/// points along each axis.
-type Part = (&'static str, fn(usize) -> Result<Section>);
-
-const PARTS: &[Part] = &[
+/// Parts with their names for progress messages; they are given the number of grid points along each axis.
+const PARTS: &[(&str, fn(usize) -> Result<Section>)] = &[
     ("equations", equations::section),
     ("critical values", numbers::section),
     ("tables", tables::section),
@@ -36,10 +33,6 @@ const PARTS: &[Part] = &[
 
 /// The book part by part, with charts of `grid` points along each axis; `making` is called with the
 /// current part and the progress.
-pub fn book(grid: usize, mut making: impl FnMut(&str, usize, usize)) -> Result<Vec<Section>> {
-    let part = |(number, (name, make)): (usize, &Part)| {
-        making(name, number, PARTS.len());
-        make(grid)
-    };
-    PARTS.iter().enumerate().map(part).collect()
+pub fn book(grid: usize, making: impl FnMut(&str, usize, usize)) -> Result<Vec<Section>> {
+    made(PARTS, grid, 0, making)
 }

@@ -1,13 +1,13 @@
 //! Figures 6 and 7: processed data of decelerations and of a figure-eight.
 
 use appell_recordings::motion_capture::Smoothed;
-use appell_report::figure::Figure;
+use appell_report::figure::{Figure, Panel};
 
 use super::laboratory::{Laboratory, Session};
 use super::rider::Manoeuvre;
-use super::simulated::simulated;
+use super::simulated;
 use super::torque::{Curve, Planar};
-use crate::book::{Part, Result, Section, failed, figure, line, panel};
+use crate::book::{Part, Result, Section, failed, line};
 
 /// Channels of the smoothed rides: pitch of the body and of the rider.
 const GAMMA: usize = 1;
@@ -105,7 +105,7 @@ fn processed(title: &str, session: &Session, torques: &[[f64; 2]]) -> Figure {
             let label = if run == 0 { letter } else { "" };
             line(label, times(run), degrees.collect())
         });
-        panel("deg", series.collect())
+        Panel::new("deg", series.collect())
     };
     let truth = session.motions[0].column("M_d").unwrap_or_default();
     let [first, second] = [0, 1].map(|k| torques.iter().map(|pair| pair[k]).collect());
@@ -116,7 +116,7 @@ fn processed(title: &str, session: &Session, torques: &[[f64; 2]]) -> Figure {
         angle("ϑ", &|run| run.angles[1].derivative(0)),
         angle("γ", &|run| run.channels[GAMMA].derivative(0)),
         angle("ϕ", &|run| run.channels[PHI].derivative(0)),
-        panel("N m", torques.to_vec()),
+        Panel::new("N m", torques.to_vec()),
     ];
-    figure(title, "t [s]", panels)
+    Figure::new(title, "t [s]", panels)
 }

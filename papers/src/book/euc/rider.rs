@@ -13,7 +13,7 @@ use appell_runtime::simulate::Sampling;
 use appell_runtime::{Simulation, Trajectory};
 use nalgebra::{DMatrix, DVector};
 
-use super::random::Random;
+use super::capture::Random;
 use crate::book::{Result, computation, edited, parameter, rows, shipped, state};
 
 /// Frames a second of the capture.

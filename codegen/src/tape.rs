@@ -63,6 +63,13 @@ pub enum Argument {
     Acceleration(u32),
 }
 
+impl Argument {
+    /// Whether both are entries of the same vector.
+    pub(crate) fn is_like(self, other: Self) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
+    }
+}
+
 /// An operation on earlier values.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]

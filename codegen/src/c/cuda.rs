@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 
 use appell_spec::foreign::sentence;
 
-use super::types::Types;
+use super::types::{GROUPS, Types};
 use super::{Options, definition, heading, helpers, is_empty};
 use crate::program::{Array, Function, FunctionKind, Layout, Own, Program, Space};
 use crate::schedule::schedule;
@@ -40,13 +40,6 @@ pub(super) const FRAME: &str = "\
 #endif
 
 ";
-
-/// The arguments of a place: their space, the name of their struct, and the array that has them.
-const GROUPS: [(Space, &str, &str); 3] = [
-    (Space::Parameters, "parameters", "p"),
-    (Space::State, "state", "x"),
-    (Space::Inputs, "inputs", "u"),
-];
 
 /// Emits the functions of a program, each with its kernel.
 pub fn cuda(program: &Program, options: &Options) -> String {

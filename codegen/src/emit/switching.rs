@@ -1,6 +1,6 @@
 //! Switching functions of an emitted model; the trait has a default for models without any.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::error::Error;
@@ -9,11 +9,12 @@ use super::model::written;
 use super::syntax::known;
 use super::types::Types;
 use crate::program::{FunctionKind, Space};
+use crate::text::type_name;
 
 /// The implementation of `Switching`, and the method of `Model` that returns it.
 pub(super) fn implementation(
     types: &Types<'_>,
-    name: &syn::Path,
+    name: &Ident,
     runtime: &syn::Path,
 ) -> Result<[TokenStream; 2], Error> {
     let counts = types.program.switch_counts();
@@ -143,7 +144,7 @@ fn call(
     [states, inputs]: [&TokenStream; 2],
 ) -> TokenStream {
     let arguments = [Space::Parameters, Space::State, Space::Inputs].map(|space| {
-        let name = known(Types::type_name(space));
+        let name = known(type_name(space));
         match (types.fields(space), space) {
             ([], _) => quote!(#name {}),
             (_, Space::Parameters) => quote!(#name::from(first(#p).map(Enclosure::constant))),

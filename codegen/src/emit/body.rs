@@ -6,7 +6,6 @@ use super::layout::{BLANK, comment};
 use super::syntax::{ident, number};
 use super::types::{Types, result_struct};
 use crate::program::{Array, Function, Layout, Space};
-use crate::schedule::names::method;
 use crate::schedule::pi::parts_of_pi;
 use crate::symbolic::{self, Rational, Relation};
 use crate::tape::{Argument, Operation, Tape, Value};
@@ -24,7 +23,7 @@ impl Notation for Rust {
     }
 
     fn function(&self, function: symbolic::Function, of: &Infix) -> String {
-        format!("{}.{}()", of.receiver(), method(function))
+        format!("{}.{}()", of.receiver(), function.name())
     }
 
     fn atan2(&self, y: &Infix, x: &Infix) -> String {

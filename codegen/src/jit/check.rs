@@ -19,6 +19,7 @@ const MOST_ARGUMENTS: usize = 1 << 24;
 #[derive(Debug)]
 pub struct Checked<'a> {
     pub(super) tape: &'a Tape,
+    sizes: Sizes,
     /// Operations, without arguments, numbers and parts.
     pub(super) operations: usize,
     /// Rows of the largest system.
@@ -62,7 +63,7 @@ impl From<&ModelInfo> for Sizes {
 
 /// Checks a tape of a model with arguments of these sizes.
 pub fn check(tape: &Tape, sizes: Sizes) -> Result<Checked<'_>, JitError> {
-    let mut checker = Checker {
+    let mut checked = Checked {
         tape,
         sizes,
         operations: 0,
@@ -70,30 +71,17 @@ pub fn check(tape: &Tape, sizes: Sizes) -> Result<Checked<'_>, JitError> {
         weights: 0,
     };
     for (place, operation) in (0..).map(Value).zip(&tape.operations) {
-        checker.operation(place, operation)?;
+        checked.operation(place, operation)?;
     }
     let end = Value(u32::try_from(tape.operations.len()).unwrap_or(u32::MAX));
     for result in &tape.results {
-        checker.count(result.entries.len())?;
-        checker.numbers(&result.entries, end)?;
+        checked.count(result.entries.len())?;
+        checked.numbers(&result.entries, end)?;
     }
-    Ok(Checked {
-        tape,
-        operations: checker.operations,
-        rows: checker.rows,
-        weights: checker.weights,
-    })
+    Ok(checked)
 }
 
-struct Checker<'a> {
-    tape: &'a Tape,
-    sizes: Sizes,
-    operations: usize,
-    rows: usize,
-    weights: usize,
-}
-
-impl Checker<'_> {
+impl Checked<'_> {
     fn operation(&mut self, place: Value, operation: &Operation) -> Result<(), JitError> {
         match operation {
             Operation::Argument(argument) => self.argument(*argument),

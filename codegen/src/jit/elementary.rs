@@ -61,7 +61,7 @@ impl Elementary {
 
 // A block of one number, so that the processor's vector instructions with fused multiply-adds are used.
 macro_rules! shims {
-    ($($name:ident),+) => {
+    ($($function:ident $name:ident),+) => {
         $(
             extern "C" fn $name<F: Blocks>(x: f64) -> f64 {
                 let mut value = [0.0];
@@ -69,26 +69,20 @@ macro_rules! shims {
                 value[0]
             }
         )+
+
+        fn unary<F: Blocks>(function: Function) -> Option<Unary> {
+            Some(match function {
+                $(Function::$function => $name::<F>,)+
+                Function::Sqrt | Function::Abs | Function::Sign => return None,
+            })
+        }
     };
 }
 
-shims!(sin, cos, asin, acos, atan, sinh, cosh, tanh, exp, ln);
-
-fn unary<F: Blocks>(function: Function) -> Option<Unary> {
-    Some(match function {
-        Function::Sin => sin::<F>,
-        Function::Cos => cos::<F>,
-        Function::Asin => asin::<F>,
-        Function::Acos => acos::<F>,
-        Function::Atan => atan::<F>,
-        Function::Sinh => sinh::<F>,
-        Function::Cosh => cosh::<F>,
-        Function::Tanh => tanh::<F>,
-        Function::Exp => exp::<F>,
-        Function::Ln => ln::<F>,
-        Function::Sqrt | Function::Abs | Function::Sign => return None,
-    })
-}
+shims!(
+    Sin sin, Cos cos, Asin asin, Acos acos, Atan atan, Sinh sinh, Cosh cosh, Tanh tanh, Exp exp,
+    Ln ln
+);
 
 extern "C" fn atan2<F: Blocks>(y: f64, x: f64) -> f64 {
     let mut value = [0.0];

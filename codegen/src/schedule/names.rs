@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::program::{FunctionKind, Program};
-use crate::symbolic::{Function, Rational};
+use crate::symbolic::Rational;
 use crate::tape::Argument;
 
 /// Longest generated name.
@@ -204,23 +204,4 @@ pub(super) fn joined(parts: &[&str]) -> Option<String> {
 pub(super) fn joined_up_to(longest: usize, parts: &[&str]) -> Option<String> {
     let name = parts.join("_");
     (name.len() <= longest && !name.contains("_part_")).then_some(name)
-}
-
-/// Method name of a function.
-pub(crate) fn method(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Asin => "asin",
-        Function::Acos => "acos",
-        Function::Atan => "atan",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
-        Function::Exp => "exp",
-        Function::Ln => "ln",
-        Function::Sqrt => "sqrt",
-        Function::Abs => "abs",
-        Function::Sign => "sign",
-    }
 }

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use crate::schedule::names::method;
 use crate::schedule::piece::{Level, levels};
 use crate::symbolic::{Function, Relation};
 use crate::tape::Arithmetic;
@@ -26,7 +25,7 @@ pub(crate) fn math_name(function: Function) -> &'static str {
     match function {
         Function::Ln => "log",
         Function::Abs => "fabs",
-        other => method(other),
+        other => other.name(),
     }
 }
 

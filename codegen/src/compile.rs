@@ -163,38 +163,3 @@ fn diagnostic(
         ..diagnostic.at(span.unwrap_or_default(), "")
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_finding_is_told_at_its_place() {
-        let text = "\
-[mechanism]
-name = 'free'
-title = 'a mass without a speed'
-[parameters]
-m = { value = 1, unit = 'kg' }
-[coordinates]
-x = { unit = 'm' }
-y = { unit = 'm' }
-[points]
-P = { from = 'O', in = 'ground', at = ['x', 'y', 0] }
-[bodies]
-b = { centre = 'P', mass = 'm' }
-[pseudo_velocities]
-v = { value = 'dot(x)', unit = 'm/s' }
-";
-        let Err(report) = compile("free.toml", text, &FunctionKind::STANDARD) else {
-            panic!("it was accepted")
-        };
-        let shown = report.plain();
-        assert!(shown.contains("missing-pseudo-velocities"), "{shown}");
-        assert!(shown.contains("free.toml:13:2"), "{shown}");
-        assert!(
-            shown.contains("2 coordinates under 0 constraint rows need 2"),
-            "{shown}"
-        );
-    }
-}

@@ -17,8 +17,7 @@ use crate::tapes::Tapes;
 ///
 /// The rates are compiled immediately, every other function is derived and compiled at its first use: most users need
 /// few of them, and finding a short tape for all derivatives takes longer than compiling it. Concurrent calls of the same function
-/// wait for its compilation. Functions that are too long to be compiled are interpreted with the same results;
-/// [`Self::interpreted`] lists these.
+/// wait for its compilation. Functions that are too long to be compiled are interpreted with the same results.
 ///
 /// [`Self::without`] specialises it for parameters that are zero.
 pub type JitModel = ProgramModel<Jit>;
@@ -111,13 +110,6 @@ impl ProgramModel<Jit> {
             whole: Some(Whole::of(self, zeros)),
         };
         Self::of(self.tapes.clone(), engine)
-    }
-
-    /// The functions used so far that are interpreted, with the reason.
-    pub fn interpreted(&self) -> impl Iterator<Item = (FunctionKind, &JitError)> {
-        FunctionKind::ALL
-            .into_iter()
-            .filter_map(|kind| Some((kind, self.engine.parts[kind as usize].reason()?)))
     }
 }
 

@@ -29,8 +29,6 @@ pub(super) enum Ready {
         sizes: Sizes,
         /// Lengths of the results.
         results: Vec<usize>,
-        /// Why compilation failed.
-        reason: JitError,
     },
 }
 
@@ -60,14 +58,6 @@ impl OnDemand {
     pub(super) fn ready<'t>(&self, tape: impl FnOnce() -> &'t Tape, sizes: Sizes) -> &Ready {
         self.ready.get_or_init(|| Ready::of(tape(), sizes, self.of))
     }
-
-    /// Why the function is interpreted, if it is.
-    pub(super) fn reason(&self) -> Option<&JitError> {
-        match self.ready.get()? {
-            Ready::Native(_) => None,
-            Ready::Interpreted { reason, .. } => Some(reason),
-        }
-    }
 }
 
 impl Ready {
@@ -76,11 +66,10 @@ impl Ready {
     fn of(tape: &Tape, sizes: Sizes, of: Use) -> Self {
         match NativeFunction::compile_for(tape, sizes, Elementary::Standard, of) {
             Ok(native) => Self::Native(native),
-            Err(reason) => Self::Interpreted {
+            Err(_) => Self::Interpreted {
                 results: tape.lengths(),
                 tape: tape.clone(),
                 sizes,
-                reason,
             },
         }
     }
@@ -94,7 +83,6 @@ impl Ready {
                 tape,
                 sizes,
                 results,
-                ..
             } => {
                 check_lengths(at, *sizes, &out, results);
                 let computed = interpret_weighted(tape, at, weights);

@@ -20,7 +20,7 @@ mod without;
 
 pub use closed_loop::{Seen, closed_loop};
 pub use cost::OperationCount;
-pub use interpret::{enclose, enclose_along, interpret, interpret_weighted};
+pub use interpret::{enclose, enclose_along, interpret, interpret_into, interpret_weighted};
 pub use unique::Unique;
 
 use crate::symbolic::{Function, Rational, Relation};

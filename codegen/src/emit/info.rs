@@ -15,32 +15,17 @@ pub(super) fn info(info: &ModelInfo) -> TokenStream {
         let order = Literal::u8_unsuffixed(order);
         quote!((#signal, #order))
     });
-    let of_quantity = || quote!(model::Quantity);
+    let quantities = [
+        ("STATES", "Pseudo-velocities and coordinates.", &info.states),
+        ("INPUTS", "Inputs and signals.", &info.inputs),
+        ("PARAMETERS", "Parameters.", &info.parameters),
+        ("OUTPUTS", "Outputs.", &info.outputs),
+    ];
+    let quantities = quantities.map(|(name, about, all)| {
+        let entries = all.iter().map(quantity);
+        list(name, about, &quote!(model::Quantity), entries)
+    });
     let statics = [
-        list(
-            "STATES",
-            "Pseudo-velocities and coordinates.",
-            &of_quantity(),
-            info.states.iter().map(quantity),
-        ),
-        list(
-            "INPUTS",
-            "Inputs and signals.",
-            &of_quantity(),
-            info.inputs.iter().map(quantity),
-        ),
-        list(
-            "PARAMETERS",
-            "Parameters.",
-            &of_quantity(),
-            info.parameters.iter().map(quantity),
-        ),
-        list(
-            "OUTPUTS",
-            "Outputs.",
-            &of_quantity(),
-            info.outputs.iter().map(quantity),
-        ),
         list(
             "SIGNALS",
             "Tabulated functions of time.",
@@ -78,6 +63,7 @@ pub(super) fn info(info: &ModelInfo) -> TokenStream {
     let explicit_time = info.explicit_time;
     let blank = blank_tokens();
     quote! {
+        #(#quantities)*
         #(#statics)*
         #blank
         /// Names, units and sizes of the model.

@@ -25,36 +25,34 @@ pub(super) type Binary = extern "C" fn(f64, f64) -> f64;
 /// Writes two numbers for one argument.
 pub(super) type Pair = unsafe extern "C" fn(f64, *mut [f64; 2]);
 
-impl Elementary {
+/// The routines of a set of elementary functions.
+pub(super) struct Routines {
     /// The function to call. `None` if inline instructions compute it.
-    pub(super) fn unary(self, function: Function) -> Option<Unary> {
-        match self {
-            Self::Standard => unary::<Standard>(function),
-            Self::Own => unary::<Own>(function),
-        }
-    }
-
+    pub(super) unary: fn(Function) -> Option<Unary>,
     /// Angle of the point (second, first).
-    pub(super) fn atan2(self) -> Binary {
-        match self {
-            Self::Standard => atan2::<Standard>,
-            Self::Own => atan2::<Own>,
-        }
-    }
-
+    pub(super) atan2: Binary,
     /// Power with a real exponent.
-    pub(super) fn powf(self) -> Binary {
-        match self {
-            Self::Standard => powf::<Standard>,
-            Self::Own => powf::<Own>,
+    pub(super) powf: Binary,
+    /// Sine and cosine.
+    pub(super) sin_cos: Pair,
+}
+
+impl Routines {
+    fn of<F: Blocks>() -> Self {
+        Self {
+            unary: unary::<F>,
+            atan2: atan2::<F>,
+            powf: powf::<F>,
+            sin_cos: sin_cos::<F>,
         }
     }
+}
 
-    /// Sine and cosine.
-    pub(super) fn sin_cos(self) -> Pair {
+impl Elementary {
+    pub(super) fn routines(self) -> Routines {
         match self {
-            Self::Standard => sin_cos::<Standard>,
-            Self::Own => sin_cos::<Own>,
+            Self::Standard => Routines::of::<Standard>(),
+            Self::Own => Routines::of::<Own>(),
         }
     }
 }

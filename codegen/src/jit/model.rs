@@ -144,7 +144,7 @@ impl Engine for Jit {
         let engine = self.at(at.p);
         engine.parts[kind as usize]
             .ready(|| engine.own(kind, tape), engine.sizes)
-            .call(at, own, out);
+            .call_weighted(at, own, out);
     }
 
     fn tape<'t>(&'t self, kind: FunctionKind, tape: &'t Tape, p: &[f64]) -> &'t Tape {

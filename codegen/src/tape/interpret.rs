@@ -29,6 +29,17 @@ pub fn interpret_weighted(tape: &Tape, at: At<'_>, weights: &[f64]) -> Vec<Vec<f
     results(tape, t, [x, u, p, weights], solve)
 }
 
+/// [`interpret_weighted`] into slices, one for each result.
+///
+/// # Panics
+///
+/// As [`interpret_weighted`], and if a slice has another length than its result.
+pub fn interpret_into(tape: &Tape, at: At<'_>, weights: &[f64], out: &mut [&mut [f64]]) {
+    for (out, result) in out.iter_mut().zip(interpret_weighted(tape, at, weights)) {
+        out.copy_from_slice(&result);
+    }
+}
+
 /// Bounds on the results over an interval of time, for functions of time and parameters, one array after the other.
 pub fn enclose(tape: &Tape, time: Enclosure, p: &[f64], bounds: &mut [Enclosure]) {
     let along = Along {

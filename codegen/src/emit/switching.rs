@@ -102,9 +102,15 @@ fn bounds_in_time(types: &Types<'_>) -> TokenStream {
     }
     let unknown = quote!(core::array::from_fn(|_| Enclosure::UNKNOWN));
     let call = call(types, kind, &quote!(p), [&unknown, &unknown]);
+    stored(&call, ["functions", "functions", "shapes"])
+}
+
+/// Writes both results of a call into a slice, one after the other.
+fn stored(call: &TokenStream, [slice, first, second]: [&'static str; 3]) -> TokenStream {
+    let [slice, first, second] = [slice, first, second].map(known);
     quote! {
         let all = #call;
-        for (to, from) in functions.iter_mut().zip(all.functions.into_iter().chain(all.shapes)) {
+        for (to, from) in #slice.iter_mut().zip(all.#first.into_iter().chain(all.#second)) {
             *to = from;
         }
     }
@@ -127,13 +133,8 @@ fn bounds_along(types: &Types<'_>) -> TokenStream {
     );
     let time = types.program.info.explicit_time;
     let time = time.then(|| quote!(let time = along.t;));
-    quote! {
-        #time
-        let all = #call;
-        for (to, from) in crossings.iter_mut().zip(all.crossings.into_iter().chain(all.pulses)) {
-            *to = from;
-        }
-    }
+    let stored = stored(&call, ["crossings", "crossings", "pulses"]);
+    quote!(#time #stored)
 }
 
 /// Calls a function on bounds; those of the states and the inputs are given.

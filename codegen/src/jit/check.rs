@@ -112,21 +112,15 @@ impl Checked<'_> {
                 let is_part = *whole < place
                     && whole.part(*index) == place
                     && (*index as usize) < self.tape.operation(*whole).parts();
-                is_part
-                    .then_some(())
-                    .ok_or(JitError::MisplacedPart { value: place.0 })
+                ensure(is_part, || JitError::MisplacedPart { value: place.0 })
             }
         }
     }
 
     fn factorise(&mut self, place: Value, matrix: &[Value]) -> Result<(), JitError> {
         let rows = matrix.len().isqrt();
-        if rows > MOST_ROWS {
-            return Err(JitError::TooManyRows {
-                rows,
-                most: MOST_ROWS,
-            });
-        }
+        let most = MOST_ROWS;
+        ensure(rows <= most, || JitError::TooManyRows { rows, most })?;
         shape(place, (rows * rows).max(1), matrix.len())?;
         // Includes the factors: each factorisation has its own on the stack.
         self.count(3 * matrix.len())?;
@@ -157,22 +151,18 @@ impl Checked<'_> {
         let next = self.tape.operations.iter().skip(whole.index() + 1);
         let found = next.zip(0..).take(count);
         let found = found.filter(|&(part, index)| *part == Operation::Part(whole, index));
-        if found.count() == count {
-            Ok(())
-        } else {
-            Err(JitError::MisplacedPart { value: whole.0 })
-        }
+        ensure(found.count() == count, || JitError::MisplacedPart {
+            value: whole.0,
+        })
     }
 
     fn count(&mut self, operations: usize) -> Result<(), JitError> {
         self.operations += operations;
-        if self.operations > MOST_OPERATIONS {
-            return Err(JitError::TooManyOperations {
-                operations: self.operations,
-                most: MOST_OPERATIONS,
-            });
-        }
-        Ok(())
+        let (operations, most) = (self.operations, MOST_OPERATIONS);
+        ensure(operations <= most, || JitError::TooManyOperations {
+            operations,
+            most,
+        })
     }
 
     /// Operands are numbers computed before `place`.
@@ -202,22 +192,19 @@ impl Checked<'_> {
             }
         };
         let index = index as usize;
-        if index < len.min(MOST_ARGUMENTS) {
-            Ok(())
-        } else {
-            Err(JitError::UnknownArgument { what, index, len })
-        }
+        let exists = index < len.min(MOST_ARGUMENTS);
+        ensure(exists, || JitError::UnknownArgument { what, index, len })
     }
 }
 
 fn shape(place: Value, expected: usize, found: usize) -> Result<(), JitError> {
-    if expected == found {
-        Ok(())
-    } else {
-        Err(JitError::SystemShape {
-            value: place.0,
-            expected,
-            found,
-        })
-    }
+    ensure(expected == found, || JitError::SystemShape {
+        value: place.0,
+        expected,
+        found,
+    })
+}
+
+fn ensure(holds: bool, error: impl FnOnce() -> JitError) -> Result<(), JitError> {
+    if holds { Ok(()) } else { Err(error()) }
 }

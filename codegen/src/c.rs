@@ -17,7 +17,7 @@ use crate::schedule::pi::parts_of_pi;
 use crate::schedule::schedule;
 use crate::symbolic::{self, Rational, Relation};
 use crate::tape::{Argument, Tape, Value};
-use crate::text::{Action, Infix, Notation, Statement, Text, math_name, shape};
+use crate::text::{Action, Infix, Notation, Text, math_name, shape, sign, unreserved};
 
 pub(crate) use adapters::{adapted, adapters};
 pub use cuda::{Kernel, cuda, kernels};
@@ -68,114 +68,37 @@ pub struct Emitted {
 }
 
 /// Keywords of C, and names of `math.h` that some implementations define as macros or objects.
-const KEYWORDS: &[&str] = &[
-    "auto",
-    "break",
-    "case",
-    "char",
-    "const",
-    "continue",
-    "default",
-    "do",
-    "double",
-    "else",
-    "enum",
-    "extern",
-    "float",
-    "for",
-    "goto",
-    "if",
-    "inline",
-    "int",
-    "long",
-    "register",
-    "restrict",
-    "return",
-    "short",
-    "signed",
-    "sizeof",
-    "static",
-    "struct",
-    "switch",
-    "typedef",
-    "union",
-    "unsigned",
-    "void",
-    "volatile",
-    "while",
-    "asm",
-    "bool",
-    "true",
-    "false",
-    "NULL",
-    "NAN",
-    "INFINITY",
-    "HUGE_VAL",
-    "errno",
-    "alignas",
-    "alignof",
-    "class",
-    "constexpr",
-    "delete",
-    "new",
-    "nullptr",
-    "operator",
-    "private",
-    "protected",
-    "public",
-    "template",
-    "this",
-    "throw",
-    "try",
-    "catch",
-    "typeof",
-    "using",
-    "virtual",
-    "namespace",
-    "friend",
-    "mutable",
-    "explicit",
-    "export",
-    "typename",
-    "and",
-    "or",
-    "not",
-    "xor",
-    "linux",
-    "unix",
-    "signgam",
-];
+const KEYWORDS: &str = "auto break case char const continue default do double else enum extern float for goto if \
+    inline int long register restrict return short signed sizeof static struct switch typedef \
+    union unsigned void volatile while asm bool true false NULL NAN INFINITY HUGE_VAL errno \
+    alignas alignof class constexpr delete new nullptr operator private protected public \
+    template this throw try catch typeof using virtual namespace friend mutable explicit \
+    export typename and or not xor linux unix signgam";
 
 impl Notation for Real {
     fn name(&self, name: &str) -> String {
-        if KEYWORDS.contains(&name) {
-            format!("{name}_")
-        } else {
-            name.to_owned()
-        }
+        unreserved(name, KEYWORDS)
     }
 
-    fn function(&self, function: symbolic::Function, of: &str) -> String {
+    fn function(&self, function: symbolic::Function, of: &Infix) -> String {
+        let of = &of.text;
         match function {
             symbolic::Function::Sign => format!("sign_of({of})"),
             other => format!("{}{}({of})", math_name(other), self.suffix()),
         }
     }
 
-    fn atan2(&self, y: &str, x: &str) -> String {
-        format!("atan2{}({y}, {x})", self.suffix())
+    fn atan2(&self, y: &Infix, x: &Infix) -> String {
+        format!("atan2{}({}, {})", self.suffix(), y.text, x.text)
     }
 
-    fn power(&self, base: &str, exponent: &str) -> String {
-        format!("pow{}({base}, {exponent})", self.suffix())
+    fn power(&self, base: &Infix, exponent: &Infix) -> String {
+        format!("pow{}({}, {})", self.suffix(), base.text, exponent.text)
     }
 
-    fn choice(&self, relation: Relation, [a, b, then, otherwise]: [String; 4]) -> String {
-        let sign = match relation {
-            Relation::Less => "<",
-            Relation::LessOrEqual => "<=",
-        };
-        format!("({a} {sign} {b} ? {then} : {otherwise})")
+    fn choice(&self, relation: Relation, operands: [Infix; 4]) -> String {
+        let [a, b, then, otherwise] = operands.map(|one| one.text);
+        format!("({a} {} {b} ? {then} : {otherwise})", sign(relation))
     }
 }
 
@@ -369,50 +292,26 @@ static void lu_solve(int n, const REAL *a, const unsigned char *exchanged, REAL 
 ";
 
 fn definition(types: &Types<'_>, function: &Function, tape: &Tape) -> String {
-    let written = Text::new(types.real, tape, &types.names);
+    let written = Text::new(types.real, tape, types.names());
     let real = types.real.name();
     let mut text = format!("{} {{\n", types.signature(function));
-    let groups = types.groups();
+    let [parameters, state, inputs] = types.groups();
     let own = function.kind.takes().map(|own| types.own(own));
     let own = own.unwrap_or_default();
     let accelerations = types.fields(Space::Accelerations);
     for argument in tape.arguments() {
         let name = types.local(argument);
-        let _ = match argument {
+        let place = match argument {
             Argument::Time => continue,
-            Argument::State(_) => {
-                writeln!(text, "    const {real} {name} = {}->{name};", groups.state)
-            }
-            Argument::Input(_) => {
-                writeln!(text, "    const {real} {name} = {}->{name};", groups.inputs)
-            }
-            Argument::Parameter(_) => {
-                writeln!(
-                    text,
-                    "    const {real} {name} = {}->{name};",
-                    groups.parameters
-                )
-            }
-            Argument::Weight(i) | Argument::OutputWeight(i) => {
-                writeln!(text, "    const {real} {name} = {own}[{i}];")
-            }
-            Argument::Acceleration(i) => {
-                let field = &accelerations[i as usize];
-                writeln!(text, "    const {real} {name} = {own}->{field};")
-            }
+            Argument::State(_) => format!("{state}->{name}"),
+            Argument::Input(_) => format!("{inputs}->{name}"),
+            Argument::Parameter(_) => format!("{parameters}->{name}"),
+            Argument::Weight(i) | Argument::OutputWeight(i) => format!("{own}[{i}]"),
+            Argument::Acceleration(i) => format!("{own}->{}", accelerations[i as usize]),
         };
+        let _ = writeln!(text, "    const {real} {name} = {place};");
     }
-    for value in written.constants() {
-        let name = types.real_name(&types.names.constant(&value));
-        let _ = writeln!(
-            text,
-            "    const {real} {name} = {};",
-            types.real.number(&value)
-        );
-    }
-    for one in written.statements() {
-        statement(&mut text, &written, &one);
-    }
+    computed(&mut text, &written);
     for unused in types.unused(tape) {
         let _ = writeln!(text, "    (void){unused};");
     }
@@ -425,54 +324,66 @@ fn definition(types: &Types<'_>, function: &Function, tape: &Tape) -> String {
     text + "}\n\n"
 }
 
-fn statement(out: &mut String, text: &Text<'_, Real>, statement: &Statement<'_, Infix>) {
-    let real = text.dialect.name();
-    let named = |name: &str| Notation::name(&text.dialect, name);
-    let factors = |number| ["lu", "moved"].map(|word| text.free(&format!("{word}_{number}")));
-    match statement.heading {
-        Some("") => out.push('\n'),
-        Some(title) => {
-            let _ = writeln!(out, "\n    /* {} */", sentence(title));
-        }
-        None => {}
+/// The numbers and the statements of a tape.
+fn computed(out: &mut String, text: &Text<'_, Real>) {
+    let real = text.notation.name();
+    for value in text.constants() {
+        let (name, number) = (text.constant(&value), text.notation.number(&value));
+        let _ = writeln!(out, "    const {real} {name} = {number};");
     }
-    let _ = match &statement.action {
-        Action::Define(name, value) => {
-            writeln!(out, "    const {real} {} = {};", named(name), value.text)
+    for statement in text.statements() {
+        match statement.heading {
+            Some("") => out.push('\n'),
+            Some(title) => {
+                let _ = writeln!(out, "\n    /* {} */", sentence(title));
+            }
+            None => {}
         }
-        Action::SinCos([sin, cos], angle) => {
-            let call = |f| Notation::function(&text.dialect, f, &angle.text);
-            let (sine, cosine) = (call(symbolic::Function::Sin), call(symbolic::Function::Cos));
-            let _ = writeln!(out, "    const {real} {} = {sine};", named(sin));
-            writeln!(out, "    const {real} {} = {cosine};", named(cos))
+        act(out, text, &statement.action);
+    }
+}
+
+fn act(out: &mut String, text: &Text<'_, Real>, action: &Action) {
+    let real = text.notation.name();
+    let factors = |number| ["lu", "moved"].map(|word| text.free(&format!("{word}_{number}")));
+    let _ = match action {
+        Action::Define(name, value) => writeln!(out, "    const {real} {name} = {};", value.text),
+        Action::SinCos(names, angle) => {
+            let functions = [symbolic::Function::Sin, symbolic::Function::Cos];
+            functions
+                .iter()
+                .zip(names)
+                .try_for_each(|(function, name)| {
+                    let value = text.notation.function(*function, angle);
+                    writeln!(out, "    const {real} {name} = {value};")
+                })
         }
         Action::Factor(number, rows) => {
             let [lu, moved] = factors(*number);
             let entries: Vec<String> = rows.iter().map(|row| Infix::list(row)).collect();
             let (size, count) = (rows.len(), rows.len() * rows.len());
-            let _ = writeln!(
+            write!(
                 out,
-                "    {real} {lu}[{count}] = {{{}}};",
+                "    {real} {lu}[{count}] = {{{}}};\n    unsigned char {moved}[{count}];\n    \
+                 lu_factor({size}, {lu}, {moved});\n",
                 entries.join(", ")
-            );
-            let _ = writeln!(out, "    unsigned char {moved}[{count}];");
-            writeln!(out, "    lu_factor({size}, {lu}, {moved});")
+            )
         }
         Action::Solve(number, unknowns, right) => {
             let [lu, moved] = factors(*number);
             let size = unknowns.len();
             // The list is named after the first unknown, since each is defined once.
-            let first = unknowns.first().map(|(name, _)| named(name));
-            let list = text.free(&format!("solved_{}", first.unwrap_or_default()));
+            let first = unknowns.first().map_or("", |(name, _)| name);
+            let list = text.free(&format!("solved_{first}"));
             let right = Infix::list(right);
-            let _ = writeln!(out, "    {real} {list}[{size}] = {{{right}}};");
-            let _ = writeln!(out, "    lu_solve({size}, {lu}, {moved}, {list});");
-            for (index, (name, used)) in unknowns.iter().enumerate() {
-                if *used {
-                    let _ = writeln!(out, "    const {real} {} = {list}[{index}];", named(name));
-                }
-            }
-            Ok(())
+            let _ = write!(
+                out,
+                "    {real} {list}[{size}] = {{{right}}};\n    lu_solve({size}, {lu}, {moved}, {list});\n"
+            );
+            let mut used = unknowns.iter().enumerate().filter(|(_, unknown)| unknown.1);
+            used.try_for_each(|(index, (name, _))| {
+                writeln!(out, "    const {real} {name} = {list}[{index}];")
+            })
         }
     };
 }

@@ -27,14 +27,12 @@ pub fn derived(file: &str, text: &str) -> Result<Derived, Report> {
     match derive(&checked.mechanism) {
         Ok(derivation) => {
             let mut warnings = checked.warnings;
-            for finding in &derivation.warnings {
-                warnings.push(diagnostic(
-                    &checked.mechanism,
-                    text,
-                    finding,
-                    Severity::Warning,
-                ));
-            }
+            let found = derivation.warnings.iter();
+            warnings.extend(
+                found.map(|finding| {
+                    diagnostic(&checked.mechanism, text, finding, Severity::Warning)
+                }),
+            );
             Ok(Derived {
                 mechanism: checked.mechanism,
                 derivation,
@@ -109,20 +107,23 @@ fn refused(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
     }
     let errors = findings.iter().map(|finding| (finding, Severity::Error));
     let reasons = reasons.iter().map(|reason| (reason, Severity::Warning));
-    let diagnostics = errors.chain(reasons);
-    let diagnostics = diagnostics
-        .map(|(finding, severity)| diagnostic(mechanism, text, finding, severity))
-        .collect();
-    Report::new(mechanism.file.as_str(), text, diagnostics)
+    report_of(mechanism, text, errors.chain(reasons))
 }
 
 /// Errors of the derivation, at their positions in the text of the spec.
 pub fn report(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
-    let diagnostics = findings
-        .iter()
-        .map(|finding| diagnostic(mechanism, text, finding, Severity::Error))
-        .collect();
-    Report::new(mechanism.file.as_str(), text, diagnostics)
+    let errors = findings.iter().map(|finding| (finding, Severity::Error));
+    report_of(mechanism, text, errors)
+}
+
+fn report_of<'f>(
+    mechanism: &Mechanism,
+    text: &str,
+    findings: impl Iterator<Item = (&'f Finding, Severity)>,
+) -> Report {
+    let diagnostics =
+        findings.map(|(finding, severity)| diagnostic(mechanism, text, finding, severity));
+    Report::new(mechanism.file.as_str(), text, diagnostics.collect())
 }
 
 fn diagnostic(
@@ -161,40 +162,5 @@ fn diagnostic(
     Diagnostic {
         severity,
         ..diagnostic.at(span.unwrap_or_default(), "")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_finding_is_told_at_its_place() {
-        let text = "\
-[mechanism]
-name = 'free'
-title = 'a mass without a speed'
-[parameters]
-m = { value = 1, unit = 'kg' }
-[coordinates]
-x = { unit = 'm' }
-y = { unit = 'm' }
-[points]
-P = { from = 'O', in = 'ground', at = ['x', 'y', 0] }
-[bodies]
-b = { centre = 'P', mass = 'm' }
-[pseudo_velocities]
-v = { value = 'dot(x)', unit = 'm/s' }
-";
-        let Err(report) = compile("free.toml", text, &FunctionKind::STANDARD) else {
-            panic!("it was accepted")
-        };
-        let shown = report.plain();
-        assert!(shown.contains("missing-pseudo-velocities"), "{shown}");
-        assert!(shown.contains("free.toml:13:2"), "{shown}");
-        assert!(
-            shown.contains("2 coordinates under 0 constraint rows need 2"),
-            "{shown}"
-        );
     }
 }

@@ -1,9 +1,9 @@
 //! Emits readable Rust from a program. All knowledge of Rust syntax in this crate is here.
 //!
-//! The files: [`types`] emits the structs, [`function`] signatures and rustdoc, [`statements`] converts the
-//! operations of a tape to statements, [`body`] adds arguments and results, [`model`] implements the run-time
-//! trait, [`equations`] displays the equations of a function, [`picture`] draws small matrices, [`layout`] inserts
-//! comments and blank lines, [`markdown`] writes the page about the model, and [`syntax`] has short constructors.
+//! The files: [`types`] emits the structs, [`function`] signatures and rustdoc, [`body`] the statements of functions,
+//! [`model`] implements the run-time trait, [`equations`] displays the equations of a function, [`picture`] draws small
+//! matrices, [`layout`] inserts comments and blank lines, [`markdown`] writes the page about the model, and [`syntax`]
+//! has identifiers and numbers.
 
 mod body;
 mod equations;
@@ -14,7 +14,6 @@ mod layout;
 mod markdown;
 mod model;
 mod picture;
-mod statements;
 mod switching;
 mod syntax;
 mod types;
@@ -91,39 +90,36 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     functions.sort_by_key(|function| function.kind);
 
     let mut costs = Vec::new();
-    let mut results = Vec::new();
     let mut items = Vec::new();
-    let mut solves = false;
     for &function in &functions {
         let tape = schedule(program, function);
         let cost = OperationCount::of(&tape);
-        solves |= cost.solves > 0;
-        results.extend(types.results_struct(function));
-        items.push(syn::Item::Fn(function::function(
-            &types, function, &tape, &cost,
-        )?));
+        items.push(function::function(&types, function, &tape, &cost)?);
         costs.push((function.kind, cost));
     }
-
+    let results = functions.iter().filter_map(|one| types.results_struct(one));
+    let solves = costs.iter().any(|(_, cost)| cost.solves > 0);
     let lu = solves.then(|| quote!(use #runtime::dense::{lu_factor, lu_solve};));
     let model = options.model_impl.then(|| quote!(use #runtime::model;));
     let structs = types.structs(&functions, options.model_impl);
-    let head = quote! {
+    let implementation = options
+        .model_impl
+        .then(|| model::implementation(&types, &runtime))
+        .transpose()?;
+    let info = options.model_impl.then(|| info::info(&program.info));
+    let conversions = types.conversions(&functions, options.model_impl, &runtime);
+    let file = quote! {
         use #runtime::Real;
         #lu
         #model
         #(#structs)*
         #(#results)*
+        #(#items)*
+        #implementation
+        #info
+        #(#conversions)*
     };
-    let mut file: syn::File = parse(head)?;
-    file.items.extend(items);
-    if options.model_impl {
-        let implementation = model::implementation(&types, &runtime)?;
-        file.items.extend(parse(implementation)?.items);
-        file.items.extend(parse(info::info(&program.info))?.items);
-    }
-    let conversions = types.conversions(&functions, options.model_impl, &runtime);
-    file.items.extend(parse(quote!(#(#conversions)*))?.items);
+    let file = syn::parse2(file).map_err(|error| Error::Syntax(error.to_string()))?;
     let mut source = options
         .spec
         .as_deref()
@@ -131,15 +127,11 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
         .unwrap_or_default();
     source.push_str(&layout::with_blank_lines(&prettyplease::unparse(&file)));
     let docs = markdown::page(&types, &costs);
-    let model = model::type_name(&types);
+    let model = model::model_name(&types);
     Ok(Emitted {
         source,
         docs,
         model,
         costs,
     })
-}
-
-fn parse(tokens: proc_macro2::TokenStream) -> Result<syn::File, Error> {
-    syn::parse2(tokens).map_err(|error| Error::Syntax(error.to_string()))
 }

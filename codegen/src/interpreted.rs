@@ -6,7 +6,7 @@ use appell_runtime::model::At;
 
 use crate::model::{Engine, ProgramModel};
 use crate::program::FunctionKind;
-use crate::tape::{Tape, interpret_weighted};
+use crate::tape::{Tape, interpret_into};
 use crate::tapes::Tapes;
 
 /// A model whose tapes are interpreted.
@@ -35,11 +35,8 @@ impl Engine for Interpreter {
         tape: &Tape,
         at: At<'_>,
         own: &[f64],
-        out: [&mut [f64]; N],
+        mut out: [&mut [f64]; N],
     ) {
-        let results = interpret_weighted(tape, at, own);
-        for (out, result) in out.into_iter().zip(results) {
-            out.copy_from_slice(&result);
-        }
+        interpret_into(tape, at, own, &mut out);
     }
 }

@@ -12,49 +12,39 @@ use crate::schedule::pi::parts_of_pi;
 use crate::schedule::schedule;
 use crate::symbolic::{self, Rational, Relation};
 use crate::tape::{Argument, Tape, Value};
-use crate::text::{Action, Infix, Notation, Statement, Text, math_name, shape};
+use crate::text::{Action, Infix, Notation, Statement, Text, math_name, shape, sign, unreserved};
 
 /// Adapts the names of namespaces; see the class `_Namespace`.
 const PRELUDE: &str = include_str!("python/prelude.py");
 
 /// Keywords of Python, and names that the functions use.
-const KEYWORDS: &[&str] = &[
-    "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue",
-    "def", "del", "elif", "else", "except", "finally", "for", "from", "global", "if", "import",
-    "in", "is", "lambda", "nonlocal", "not", "or", "pass", "raise", "return", "try", "while",
-    "with", "yield", "xp",
-];
+const KEYWORDS: &str = "False None True and as assert async await break class continue def del elif else except \
+    finally for from global if import in is lambda nonlocal not or pass raise return try while \
+    with yield xp";
 
 #[derive(Clone, Copy)]
 struct Python;
 
 impl Notation for Python {
     fn name(&self, name: &str) -> String {
-        if KEYWORDS.contains(&name) {
-            format!("{name}_")
-        } else {
-            name.to_owned()
-        }
+        unreserved(name, KEYWORDS)
     }
 
-    fn function(&self, function: symbolic::Function, of: &str) -> String {
-        format!("_f.{}({of})", math_name(function))
+    fn function(&self, function: symbolic::Function, of: &Infix) -> String {
+        format!("_f.{}({})", math_name(function), of.text)
     }
 
-    fn atan2(&self, y: &str, x: &str) -> String {
-        format!("_f.atan2({y}, {x})")
+    fn atan2(&self, y: &Infix, x: &Infix) -> String {
+        format!("_f.atan2({}, {})", y.text, x.text)
     }
 
-    fn power(&self, base: &str, exponent: &str) -> String {
-        format!("_f.power({base}, {exponent})")
+    fn power(&self, base: &Infix, exponent: &Infix) -> String {
+        format!("_f.power({}, {})", base.text, exponent.text)
     }
 
-    fn choice(&self, relation: Relation, [a, b, then, otherwise]: [String; 4]) -> String {
-        let sign = match relation {
-            Relation::Less => "<",
-            Relation::LessOrEqual => "<=",
-        };
-        format!("_f.where({a} {sign} {b}, {then}, {otherwise})")
+    fn choice(&self, relation: Relation, operands: [Infix; 4]) -> String {
+        let [a, b, then, otherwise] = operands.map(|one| one.text);
+        format!("_f.where({a} {} {b}, {then}, {otherwise})", sign(relation))
     }
 }
 
@@ -128,7 +118,7 @@ fn definition(
     let own = function.kind.takes().map_or("", Own::name);
     let [t, x, u, p, own] = ["t", "x", "u", "p", own].map(|name| {
         if name == "t" {
-            Notation::name(&Python, &arguments.time)
+            Python.name(&arguments.time)
         } else {
             written.free(name)
         }
@@ -161,7 +151,7 @@ fn definition(
     }
     text.push_str("    \"\"\"\n    _f = _namespace(xp)\n");
     for argument in tape.arguments() {
-        let name = Notation::name(&Python, arguments.get(argument));
+        let name = Python.name(arguments.get(argument));
         let (of, index) = match argument {
             Argument::Time => continue,
             Argument::State(i) => (&x, i),
@@ -174,11 +164,11 @@ fn definition(
         let _ = writeln!(text, "    {name} = {of}[{index}]");
     }
     for value in written.constants() {
-        let name = Notation::name(&Python, &arguments.constant(&value));
+        let name = written.constant(&value);
         let _ = writeln!(text, "    {name} = {}", constant(&value));
     }
     for one in written.statements() {
-        statement(text, &written, &one);
+        statement(text, &one);
     }
     let results: Vec<String> = (function.results.iter().zip(&tape.results))
         .map(|(array, result)| nested(&written, &shape(program, array.layout), &result.entries))
@@ -193,8 +183,7 @@ fn definition(
     };
 }
 
-fn statement(out: &mut String, text: &Text<'_, Python>, statement: &Statement<'_, Infix>) {
-    let named = |name: &str| Notation::name(&text.dialect, name);
+fn statement(out: &mut String, statement: &Statement<'_>) {
     match statement.heading {
         Some("") => out.push('\n'),
         Some(title) => {
@@ -203,9 +192,9 @@ fn statement(out: &mut String, text: &Text<'_, Python>, statement: &Statement<'_
         None => {}
     }
     let _ = match &statement.action {
-        Action::Define(name, value) => writeln!(out, "    {} = {}", named(name), value.text),
+        Action::Define(name, value) => writeln!(out, "    {name} = {}", value.text),
         Action::SinCos([sin, cos], angle) => {
-            let (sin, cos, angle) = (named(sin), named(cos), &angle.text);
+            let angle = &angle.text;
             writeln!(out, "    {sin}, {cos} = _f.sin({angle}), _f.cos({angle})")
         }
         Action::Factor(number, rows) => {
@@ -214,12 +203,11 @@ fn statement(out: &mut String, text: &Text<'_, Python>, statement: &Statement<'_
             writeln!(out, "    _matrix_{number} = [{}]", rows.join(", "))
         }
         Action::Solve(number, unknowns, right) => {
-            let unknowns: Vec<String> = unknowns.iter().map(|(name, _)| named(name)).collect();
-            let right = Infix::list(right);
+            let unknowns: Vec<&str> = unknowns.iter().map(|(name, _)| &**name).collect();
+            let (unknowns, right) = (unknowns.join(", "), Infix::list(right));
             writeln!(
                 out,
-                "    {}, = _f.solve(_matrix_{number}, [{right}])",
-                unknowns.join(", ")
+                "    {unknowns}, = _f.solve(_matrix_{number}, [{right}])"
             )
         }
     };

@@ -30,6 +30,7 @@ pub use gradient::gradient;
 pub use graph::Graph;
 pub use identity::IdentityTest;
 pub use interval::{Interval, Intervals};
+pub(crate) use node::applied;
 pub use node::{Definition, Expr, Factor, Function, Node, Relation, SymbolId, System, Term};
 pub use rational::Rational;
 pub use substitute::Substitution;

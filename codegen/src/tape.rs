@@ -20,7 +20,7 @@ mod without;
 
 pub use closed_loop::{Seen, closed_loop};
 pub use cost::OperationCount;
-pub use interpret::{enclose, enclose_along, interpret, interpret_weighted};
+pub use interpret::{enclose, enclose_along, interpret, interpret_into, interpret_weighted};
 pub use unique::Unique;
 
 use crate::symbolic::{Function, Rational, Relation};
@@ -61,6 +61,13 @@ pub enum Argument {
     OutputWeight(u32),
     /// Given pseudo-acceleration by index.
     Acceleration(u32),
+}
+
+impl Argument {
+    /// Whether both are entries of the same vector.
+    pub(crate) fn is_like(self, other: Self) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
+    }
 }
 
 /// An operation on earlier values.

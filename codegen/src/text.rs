@@ -1,77 +1,47 @@
 //! Tapes as text: statements and expressions, written alike for all languages.
 //!
 //! A value with a name is a statement; other values are written where they are used, unless they are used more than
-//! once or nest too deeply. A [`Dialect`] has what differs between languages.
+//! once or nest too deeply. A [`Notation`] has what differs between languages.
 
-mod dump;
 mod infix;
-mod shape;
+mod vectors;
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use crate::schedule::names::ArgumentNames;
-use crate::symbolic::{Function, Rational, Relation};
-use crate::tape::{Arithmetic, Operation, Tape, Value};
+use crate::symbolic::Rational;
+use crate::tape::{Operation, Tape, Value};
 
-pub(crate) use infix::{Infix, Notation, math_name};
-pub(crate) use shape::shape;
-
-/// The expressions and statements of a language.
-pub(crate) trait Dialect {
-    /// An expression.
-    type Expression;
-
-    /// The value or argument of this name.
-    fn name(&self, name: &str) -> Self::Expression;
-    /// A number that is not negative, with the name of its constant.
-    fn number(&self, value: &Rational, name: &str) -> Self::Expression;
-    /// `-a`
-    fn negated(&self, a: Self::Expression) -> Self::Expression;
-    /// `a ∘ b`
-    fn binary(
-        &self,
-        operation: Arithmetic,
-        a: Self::Expression,
-        b: Self::Expression,
-    ) -> Self::Expression;
-    /// A function of one argument.
-    fn function(&self, function: Function, a: Self::Expression) -> Self::Expression;
-    /// The angle of a point in the plane.
-    fn atan2(&self, y: Self::Expression, x: Self::Expression) -> Self::Expression;
-    /// A power with a real exponent.
-    fn power(&self, base: Self::Expression, exponent: Self::Expression) -> Self::Expression;
-    /// Left and right side of the relation, value if it holds, value otherwise.
-    fn choice(&self, relation: Relation, operands: [Self::Expression; 4]) -> Self::Expression;
-}
+pub(crate) use infix::{Infix, Notation, math_name, sign, unreserved};
+pub(crate) use vectors::{GROUPS, Vectors, shape, type_name};
 
 /// A statement of a function.
-pub(crate) struct Statement<'a, E> {
+pub(crate) struct Statement<'a> {
     /// The heading before it; an empty one is a blank line.
     pub(crate) heading: Option<&'a str>,
-    pub(crate) action: Action<'a, E>,
+    pub(crate) action: Action,
 }
 
 /// What a statement does.
-pub(crate) enum Action<'a, E> {
+pub(crate) enum Action {
     /// Defines a value.
-    Define(Cow<'a, str>, E),
+    Define(String, Infix),
     /// Defines the sine and the cosine of an angle.
-    SinCos([Cow<'a, str>; 2], E),
+    SinCos([String; 2], Infix),
     /// Factorises a matrix, given row by row, with this number.
-    Factor(usize, Vec<Vec<E>>),
+    Factor(usize, Vec<Vec<Infix>>),
     /// Solves the system of the factorisation with this number: its unknowns, each with a mark whether it is used,
     /// and its right-hand side.
-    Solve(usize, Vec<(Cow<'a, str>, bool)>, Vec<E>),
+    Solve(usize, Vec<(String, bool)>, Vec<Infix>),
 }
 
 /// Writes one tape.
-pub(crate) struct Text<'a, D> {
-    pub(crate) dialect: D,
+pub(crate) struct Text<'a, N> {
+    pub(crate) notation: N,
     pub(crate) tape: &'a Tape,
     pub(crate) names: &'a ArgumentNames,
-    /// By value: its name, if it has a statement.
-    identifiers: Vec<Option<Cow<'a, str>>>,
+    /// By value: its name in the language, if it has a statement.
+    identifiers: Vec<Option<String>>,
     /// By value: how many operations and results use it.
     uses: Vec<u32>,
 }
@@ -79,8 +49,8 @@ pub(crate) struct Text<'a, D> {
 /// The deepest nesting of an expression. The scheduler names values long before.
 const DEEPEST: u32 = 64;
 
-impl<'a, D: Dialect> Text<'a, D> {
-    pub(crate) fn new(dialect: D, tape: &'a Tape, names: &'a ArgumentNames) -> Self {
+impl<'a, N: Notation> Text<'a, N> {
+    pub(crate) fn new(notation: N, tape: &'a Tape, names: &'a ArgumentNames) -> Self {
         let mut uses = vec![0; tape.operations.len()];
         let operands = tape.operations.iter().flat_map(Operation::operands);
         let entries = tape.results.iter().flat_map(|result| &result.entries);
@@ -88,7 +58,7 @@ impl<'a, D: Dialect> Text<'a, D> {
             uses[value.index()] += 1;
         }
         let mut text = Self {
-            dialect,
+            notation,
             tape,
             names,
             identifiers: Vec::with_capacity(uses.len()),
@@ -110,9 +80,9 @@ impl<'a, D: Dialect> Text<'a, D> {
                 || matches!(operation, Operation::Part(..))
                 || depth > DEEPEST;
             let identifier = match &self.tape.names[index] {
-                Some(name) => Some(name.as_str().into()),
+                Some(name) => Some(self.notation.name(name)),
                 None if needs_name && operation.is_number() => {
-                    Some(self.free(&format!("v_{index}")).into())
+                    Some(self.notation.name(&self.free(&format!("v_{index}"))))
                 }
                 None => None,
             };
@@ -122,45 +92,45 @@ impl<'a, D: Dialect> Text<'a, D> {
     }
 
     /// The name of a value that has a statement.
-    fn identifier(&self, value: Value) -> Option<Cow<'a, str>> {
-        self.identifiers[value.index()].clone()
+    fn identifier(&self, value: Value) -> String {
+        self.identifiers[value.index()].clone().unwrap_or_default()
     }
 
     /// A value: its name, or the expression that computes it.
-    pub(crate) fn value(&self, value: Value) -> D::Expression {
-        match self.identifier(value) {
-            Some(name) => self.dialect.name(&name),
+    pub(crate) fn value(&self, value: Value) -> Infix {
+        match &self.identifiers[value.index()] {
+            Some(name) => Infix::atom(name.clone()),
             None => self.expression(value),
         }
     }
 
     /// Several values.
-    pub(crate) fn values(&self, values: &[Value]) -> Vec<D::Expression> {
+    pub(crate) fn values(&self, values: &[Value]) -> Vec<Infix> {
         values.iter().map(|&value| self.value(value)).collect()
     }
 
+    /// The name of a positive number.
+    pub(crate) fn constant(&self, value: &Rational) -> String {
+        self.notation.name(&self.names.constant(value))
+    }
+
     /// The expression that computes a value; it nests as deep as [`DEEPEST`].
-    fn expression(&self, value: Value) -> D::Expression {
-        let dialect = &self.dialect;
-        match self.tape.operation(value) {
-            Operation::Argument(argument) => dialect.name(self.names.get(*argument)),
-            Operation::Constant(number) => {
-                let magnitude = number.abs();
-                let written = dialect.number(&magnitude, &self.names.constant(&magnitude));
-                if number.is_negative() {
-                    dialect.negated(written)
-                } else {
-                    written
-                }
+    fn expression(&self, value: Value) -> Infix {
+        let notation = &self.notation;
+        Infix::atom(match self.tape.operation(value) {
+            Operation::Argument(argument) => notation.name(self.names.get(*argument)),
+            Operation::Constant(number) if number.is_negative() => {
+                return Infix::atom(self.constant(&number.abs())).negated();
             }
-            Operation::Negate(a) => dialect.negated(self.value(*a)),
+            Operation::Constant(number) => self.constant(number),
+            Operation::Negate(a) => return self.value(*a).negated(),
             Operation::Binary(operation, a, b) => {
-                dialect.binary(*operation, self.value(*a), self.value(*b))
+                return self.value(*a).binary(*operation, &self.value(*b));
             }
-            Operation::Function(function, a) => dialect.function(*function, self.value(*a)),
-            Operation::Atan2(y, x) => dialect.atan2(self.value(*y), self.value(*x)),
+            Operation::Function(function, a) => notation.function(*function, &self.value(*a)),
+            Operation::Atan2(y, x) => notation.atan2(&self.value(*y), &self.value(*x)),
             Operation::Power(base, exponent) => {
-                dialect.power(self.value(*base), self.value(*exponent))
+                notation.power(&self.value(*base), &self.value(*exponent))
             }
             Operation::Choice {
                 relation,
@@ -168,18 +138,18 @@ impl<'a, D: Dialect> Text<'a, D> {
                 branches: [then, otherwise],
             } => {
                 let operands = [left, right, then, otherwise];
-                dialect.choice(*relation, operands.map(|value| self.value(*value)))
+                notation.choice(*relation, operands.map(|value| self.value(*value)))
             }
             // These are statements: their parts have names.
             Operation::SinCos(_)
             | Operation::Factorise(_)
             | Operation::Solve { .. }
-            | Operation::Part(..) => dialect.name(&self.identifier(value).unwrap_or_default()),
-        }
+            | Operation::Part(..) => self.identifier(value),
+        })
     }
 
     /// The statements, in order.
-    pub(crate) fn statements(&self) -> Vec<Statement<'a, D::Expression>> {
+    pub(crate) fn statements(&self) -> Vec<Statement<'a>> {
         let mut statements = Vec::new();
         let mut headings = self.tape.headings.iter().peekable();
         let mut factorised: Vec<Value> = Vec::new();
@@ -197,15 +167,10 @@ impl<'a, D: Dialect> Text<'a, D> {
     }
 
     /// The statement that starts with an operation, if one does.
-    fn action(
-        &self,
-        value: Value,
-        factorised: &mut Vec<Value>,
-    ) -> Option<Action<'a, D::Expression>> {
-        let name = |value| self.identifier(value).unwrap_or_default();
+    fn action(&self, value: Value, factorised: &mut Vec<Value>) -> Option<Action> {
         Some(match self.tape.operation(value) {
             Operation::SinCos(angle) => Action::SinCos(
-                [0, 1].map(|index| name(value.part(index))),
+                [0, 1].map(|index| self.identifier(value.part(index))),
                 self.value(*angle),
             ),
             Operation::Factorise(matrix) => {
@@ -220,12 +185,16 @@ impl<'a, D: Dialect> Text<'a, D> {
             } => {
                 let number = factorised.iter().position(|other| other == factorisation);
                 let unknowns = (0..).map(|row| value.part(row)).take(right.len());
-                let unknowns = unknowns.map(|part| (name(part), self.uses[part.index()] > 0));
+                let unknowns =
+                    unknowns.map(|part| (self.identifier(part), self.uses[part.index()] > 0));
                 // A factorisation comes before its solutions.
                 Action::Solve(number.unwrap_or(0), unknowns.collect(), self.values(right))
             }
             Operation::Part(..) => return None,
-            _ => Action::Define(self.identifier(value)?, self.expression(value)),
+            _ => {
+                let name = self.identifiers[value.index()].clone()?;
+                Action::Define(name, self.expression(value))
+            }
         })
     }
 
@@ -245,11 +214,14 @@ impl<'a, D: Dialect> Text<'a, D> {
     /// A name different from all arguments and values.
     pub(crate) fn free(&self, wanted: &str) -> String {
         let mut name = wanted.to_owned();
-        let is_taken = |name: &String| {
-            let mut values = self.tape.names.iter().flatten();
-            values.any(|other| other == name) || self.names.iter().any(|other| other == name)
-        };
-        while is_taken(&name) {
+        while self
+            .tape
+            .names
+            .iter()
+            .flatten()
+            .chain(self.names.iter())
+            .any(|other| *other == name)
+        {
             name.push('_');
         }
         name

@@ -224,7 +224,6 @@ fn every_method_agrees_with_the_interpreter() {
         vec![outputs.to_vec()],
         interpreted(&program, FunctionKind::Outputs)
     );
-    assert_eq!(model.interpreted().count(), 0);
 }
 
 #[test]
@@ -324,13 +323,9 @@ fn functions_that_cannot_be_compiled_are_interpreted() {
     outputs.results[0].entries[0] = unknowns[7];
 
     let model = JitModel::new(&program).unwrap();
-    assert_eq!(model.interpreted().count(), 0, "nothing was used yet");
     let mut outputs = [9.0; 1];
     model.outputs(AT, &mut outputs);
     assert_eq!(outputs, [AT.x[0] / (AT.p[0] * AT.p[0])]);
-    let (kind, reason) = model.interpreted().next().unwrap();
-    assert_eq!(kind, FunctionKind::Outputs);
-    assert!(matches!(reason, JitError::TooManyRows { rows: 65, .. }));
     let wrong = AssertUnwindSafe(|| model.outputs(AT, &mut []));
     assert!(catch_unwind(wrong).is_err());
 }

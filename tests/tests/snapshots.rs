@@ -1,11 +1,9 @@
-//! The text that is compiled for the mechanisms of the papers, and the schedules of their rates.
+//! The text that is compiled for the mechanisms of the papers.
 //!
 //! `cargo insta review` shows and accepts changes.
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_codegen::program::FunctionKind;
-use appell_codegen::schedule::schedule;
 use appell_models::Shipped;
 use appell_tests::shipped;
 
@@ -16,22 +14,6 @@ fn emitted_code_is_the_reviewed_one() {
     for name in MECHANISMS {
         let code = Shipped::find(name).unwrap().code;
         insta::assert_snapshot!(format!("emitted_{name}"), code);
-    }
-}
-
-#[test]
-fn schedules_of_the_rates_are_the_reviewed_ones() {
-    for name in MECHANISMS {
-        let program = shipped::program(name);
-        let rates = program
-            .functions
-            .iter()
-            .find(|f| f.kind == FunctionKind::Rates)
-            .unwrap();
-        insta::assert_snapshot!(
-            format!("rates_{name}"),
-            schedule(program, rates).dump(program)
-        );
     }
 }
 

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::types::Types;
+use super::types::{GROUPS, Types};
 use super::{Real, is_empty};
-use crate::program::{Function, FunctionKind, Layout, Program, Space};
+use crate::program::{Function, FunctionKind, Layout, Program};
 use crate::text::shape;
 
 /// A function of a model that reads and fills arrays of doubles, with the names of its results. Results without
@@ -38,12 +38,6 @@ pub(crate) fn adapters(program: &Program) -> String {
     }
     text
 }
-
-const GROUPS: [(Space, &str, &str); 3] = [
-    (Space::Parameters, "parameters", "p"),
-    (Space::State, "state", "x"),
-    (Space::Inputs, "inputs", "u"),
-];
 
 /// Fills the structs of arguments.
 fn loader(types: &Types<'_>) -> String {

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 
 use appell_spec::foreign::sentence;
 
-use super::types::Types;
+use super::types::{GROUPS, Types};
 use super::{Options, definition, heading, helpers, is_empty};
 use crate::program::{Array, Function, FunctionKind, Layout, Own, Program, Space};
 use crate::schedule::schedule;
@@ -40,13 +40,6 @@ pub(super) const FRAME: &str = "\
 #endif
 
 ";
-
-/// The arguments of a place: their space, the name of their struct, and the array that has them.
-const GROUPS: [(Space, &str, &str); 3] = [
-    (Space::Parameters, "parameters", "p"),
-    (Space::State, "state", "x"),
-    (Space::Inputs, "inputs", "u"),
-];
 
 /// Emits the functions of a program, each with its kernel.
 pub fn cuda(program: &Program, options: &Options) -> String {
@@ -100,11 +93,8 @@ pub fn kernels(program: &Program, options: &Options) -> Vec<Kernel> {
     let kernels = super::emitted(program, options).map(|function| {
         let results = function.results.iter();
         let results = results.filter(|array| !is_empty(program, array));
-        let own = function.kind.takes().map(|own| match own {
-            Own::Accelerations => types.fields(Space::Accelerations).len(),
-            Own::Weights => types.fields(Space::State).len(),
-            Own::OutputWeights => types.fields(Space::Outputs).len(),
-        });
+        let own = function.kind.takes();
+        let own = own.map(|own| types.fields(space_of(own)).len());
         Kernel {
             function: function.kind,
             name: format!("{}_{}_places", types.prefix, function.kind.name()),
@@ -115,6 +105,15 @@ pub fn kernels(program: &Program, options: &Options) -> Vec<Kernel> {
         }
     });
     kernels.collect()
+}
+
+/// The vector whose entries an additional argument has.
+fn space_of(own: Own) -> Space {
+    match own {
+        Own::Accelerations => Space::Accelerations,
+        Own::Weights => Space::State,
+        Own::OutputWeights => Space::Outputs,
+    }
 }
 
 /// The arrays of the kernels.
@@ -212,18 +211,15 @@ fn kernel(types: &Types<'_>, function: &Function) -> String {
 /// The local of an additional argument.
 fn own_of_place(types: &Types<'_>, own: Own) -> String {
     let (real, name) = (types.real.name(), own.name());
-    let fields = |space: Space| types.fields(space);
-    let count = match own {
-        Own::Accelerations => {
-            let mut text = format!("        {} own;\n", types.type_name(Space::Accelerations));
-            for (k, field) in fields(Space::Accelerations).iter().enumerate() {
-                let _ = writeln!(text, "        own.{field} = {name}[{k} * n + i];");
-            }
-            return text;
+    let fields = types.fields(space_of(own));
+    if own == Own::Accelerations {
+        let mut text = format!("        {} own;\n", types.type_name(Space::Accelerations));
+        for (k, field) in fields.iter().enumerate() {
+            let _ = writeln!(text, "        own.{field} = {name}[{k} * n + i];");
         }
-        Own::Weights => fields(Space::State).len(),
-        Own::OutputWeights => fields(Space::Outputs).len(),
-    };
+        return text;
+    }
+    let count = fields.len();
     format!(
         "        {real} own[{count}];\n        for (int k = 0; k < {count}; k++) {{\n            \
          own[k] = {name}[k * n + i];\n        }}\n"
@@ -234,39 +230,39 @@ fn own_of_place(types: &Types<'_>, own: Own) -> String {
 fn result(types: &Types<'_>, array: &Array, to: &str, [locals, call, store]: [&mut String; 3]) {
     let real = types.real.name();
     let local = format!("own_{}", to.trim_start_matches("to_"));
-    // Writing to a string cannot fail.
-    let _ = match (array.layout, shape(types.program, array.layout).as_slice()) {
+    let (declared, reference, stored) = match (array.layout, &*shape(types.program, array.layout)) {
         (Layout::Vector(space), _) => {
-            let _ = writeln!(locals, "        {} {local};", types.type_name(space));
-            let _ = write!(call, ", &{local}");
-            for (k, field) in types.fields(space).iter().enumerate() {
-                let _ = writeln!(store, "        {to}[{k} * n + i] = {local}.{field};");
-            }
-            Ok(())
+            let fields = types.fields(space).into_iter().enumerate();
+            let stored =
+                fields.map(|(k, field)| format!("        {to}[{k} * n + i] = {local}.{field};\n"));
+            let declared = format!("{} {local}", types.type_name(space));
+            (declared, "&", stored.collect())
         }
-        (_, [rows, columns]) => {
-            let _ = writeln!(locals, "        {real} {local}[{rows}][{columns}];");
-            let _ = write!(call, ", {local}");
-            writeln!(
-                store,
+        (_, [rows, columns]) => (
+            format!("{real} {local}[{rows}][{columns}]"),
+            "",
+            format!(
                 "        for (int j = 0; j < {rows}; j++) {{\n            for (int k = 0; k < {columns}; k++) {{\n                \
-                 {to}[(j * {columns} + k) * n + i] = {local}[j][k];\n            }}\n        }}"
-            )
-        }
-        (_, [count]) => {
-            let _ = writeln!(locals, "        {real} {local}[{count}];");
-            let _ = write!(call, ", {local}");
-            writeln!(
-                store,
-                "        for (int k = 0; k < {count}; k++) {{\n            {to}[k * n + i] = {local}[k];\n        }}"
-            )
-        }
-        _ => {
-            let _ = writeln!(locals, "        {real} {local};");
-            let _ = write!(call, ", &{local}");
-            writeln!(store, "        {to}[i] = {local};")
-        }
+                 {to}[(j * {columns} + k) * n + i] = {local}[j][k];\n            }}\n        }}\n"
+            ),
+        ),
+        (_, [count]) => (
+            format!("{real} {local}[{count}]"),
+            "",
+            format!(
+                "        for (int k = 0; k < {count}; k++) {{\n            {to}[k * n + i] = {local}[k];\n        }}\n"
+            ),
+        ),
+        _ => (
+            format!("{real} {local}"),
+            "&",
+            format!("        {to}[i] = {local};\n"),
+        ),
     };
+    // Writing to a string cannot fail.
+    let _ = writeln!(locals, "        {declared};");
+    let _ = write!(call, ", {reference}{local}");
+    *store += &stored;
 }
 
 /// Many steps of many motions.

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use appell_runtime::integrate::{Coefficients, Options, Range, Row};
 use appell_spec::foreign::sentence;
 
-use super::{Real, cuda, helpers, statement};
+use super::{Real, computed, cuda, helpers};
 use crate::schedule::names::ArgumentNames;
 use crate::tape::{Argument, Tape};
 use crate::text::Text;
@@ -150,17 +150,7 @@ fn over_arrays(name: &str, tape: &Tape, sizes: [usize; 3]) -> String {
         };
         let _ = writeln!(text, "    const double {} = {place};", names.get(argument));
     }
-    for value in written.constants() {
-        let name = names.constant(&value);
-        let _ = writeln!(
-            text,
-            "    const double {name} = {};",
-            Real::Double.number(&value)
-        );
-    }
-    for one in written.statements() {
-        statement(&mut text, &written, &one);
-    }
+    computed(&mut text, &written);
     text += "    (void)t;\n    (void)x;\n    (void)u;\n    (void)p;\n    (void)values;\n";
     let entries = tape
         .results

@@ -9,26 +9,25 @@ use super::{Real, is_empty};
 use crate::program::{Array, Function, Layout, Own, Program, Space};
 use crate::schedule::names::{ArgumentNames, identifier};
 use crate::tape::{Argument, Tape};
-use crate::text::{Notation, shape};
+use crate::text::{self, Notation, Vectors, shape, type_name};
 
 /// Names of types, fields and arguments.
 pub(super) struct Types<'a> {
     pub(super) program: &'a Program,
     pub(super) real: Real,
-    pub(super) names: ArgumentNames,
+    vectors: Vectors,
     /// Prefix of all names in the header.
     pub(super) prefix: String,
     /// Prefix of types.
     type_prefix: String,
 }
 
-/// Names of the arguments of a function.
-pub(super) struct Groups {
-    pub(super) time: String,
-    pub(super) parameters: String,
-    pub(super) state: String,
-    pub(super) inputs: String,
-}
+/// The vectors among the arguments of all functions: names of their structs, and of arrays that have them.
+pub(super) const GROUPS: [(Space, &str, &str); 3] = [
+    (Space::Parameters, "parameters", "p"),
+    (Space::State, "state", "x"),
+    (Space::Inputs, "inputs", "u"),
+];
 
 impl<'a> Types<'a> {
     pub(super) fn new(program: &'a Program, real: Real) -> Self {
@@ -40,103 +39,41 @@ impl<'a> Types<'a> {
         Self {
             program,
             real,
-            names: ArgumentNames::of(program),
+            vectors: Vectors::of(program),
             prefix,
             type_prefix,
         }
     }
 
-    pub(super) fn real_name(&self, name: &str) -> String {
-        Notation::name(&self.real, name)
+    pub(super) fn names(&self) -> &ArgumentNames {
+        &self.vectors.names
     }
 
     /// The local of an argument, with the name of its field.
     pub(super) fn local(&self, argument: Argument) -> String {
-        self.real_name(self.names.get(argument))
+        Notation::name(&self.real, self.names().get(argument))
     }
 
-    /// Arguments of functions, with names different from all quantities.
-    pub(super) fn groups(&self) -> Groups {
-        let free = |name| self.free(name);
-        Groups {
-            time: self.local(Argument::Time),
-            parameters: free("parameters"),
-            state: free("state"),
-            inputs: free("inputs"),
-        }
-    }
-
-    /// A name different from all quantities.
-    fn free(&self, name: &str) -> String {
-        let mut name = name.to_owned();
-        while self.names.iter().any(|other| *other == name) {
-            name.push('_');
-        }
-        name
+    /// Arguments of functions, in the order of [`GROUPS`], with names different from all quantities.
+    pub(super) fn groups(&self) -> [String; 3] {
+        GROUPS.map(|(_, name, _)| self.names().free(name))
     }
 
     /// Name of an additional argument of a function.
     pub(super) fn own(&self, own: Own) -> String {
-        self.free(own.name())
+        self.names().free(own.name())
     }
 
     pub(super) fn type_name(&self, space: Space) -> String {
-        let name = match space {
-            Space::Parameters => "Parameters",
-            Space::State => "State",
-            Space::Inputs => "Inputs",
-            Space::Outputs => "Outputs",
-            Space::Rates => "Rates",
-            Space::Accelerations => "Accelerations",
-            Space::CoordinateRates => "CoordinateRates",
-            Space::GeneralizedForces => "GeneralizedForces",
-            Space::ConstraintRows => "ConstraintResidual",
-            Space::Reactions => "Reactions",
-        };
-        format!("{}{name}", self.type_prefix)
+        format!("{}{}", self.type_prefix, type_name(space))
     }
 
     /// Fields of a vector.
     pub(super) fn fields(&self, space: Space) -> Vec<String> {
-        let info = &self.program.info;
-        let names = &self.names;
-        let speeds = info.speeds.min(names.states.len());
-        let own = |list: &[String]| list.iter().map(|name| self.real_name(name)).collect();
-        let rate = |list: &[String]| list.iter().map(|name| format!("{name}_dot")).collect();
-        let distinct = |texts: Vec<String>| {
-            let mut taken = crate::schedule::names::Names::default();
-            texts
-                .iter()
-                .map(|text| self.real_name(&taken.fresh(text)))
-                .collect()
-        };
-        match space {
-            Space::Parameters => own(&names.parameters),
-            Space::State => own(&names.states),
-            Space::Inputs => own(&names.inputs),
-            Space::Rates => rate(&names.states),
-            Space::Accelerations => rate(&names.states[..speeds]),
-            Space::CoordinateRates => rate(&names.states[speeds..]),
-            Space::GeneralizedForces => own(&names.states[..speeds]),
-            Space::Outputs => distinct(
-                info.outputs
-                    .iter()
-                    .map(|output| output.name.to_string())
-                    .collect(),
-            ),
-            Space::ConstraintRows => distinct(
-                info.constraint_rows
-                    .iter()
-                    .map(ToString::to_string)
-                    .collect(),
-            ),
-            Space::Reactions => distinct(
-                info.reactions
-                    .iter()
-                    .map(|reaction| reaction.name.to_string())
-                    .collect(),
-            ),
-        }
+        let fields = self.vectors.entries(space).iter();
+        fields
+            .map(|field| Notation::name(&self.real, field))
+            .collect()
     }
 
     fn structure(&self, space: Space, about: &str) -> String {
@@ -162,18 +99,11 @@ impl<'a> Types<'a> {
 
     /// The signature of a function.
     pub(super) fn signature(&self, function: &Function) -> String {
-        let groups = self.groups();
         let real = self.real.name();
-        let mut arguments = vec![
-            format!("{real} {}", groups.time),
-            format!(
-                "const {} *{}",
-                self.type_name(Space::Parameters),
-                groups.parameters
-            ),
-            format!("const {} *{}", self.type_name(Space::State), groups.state),
-            format!("const {} *{}", self.type_name(Space::Inputs), groups.inputs),
-        ];
+        let mut arguments = vec![format!("{real} {}", self.local(Argument::Time))];
+        for ((space, ..), name) in GROUPS.into_iter().zip(self.groups()) {
+            arguments.push(format!("const {} *{name}", self.type_name(space)));
+        }
         if let Some(own) = function.kind.takes() {
             let type_name = match own {
                 Own::Weights | Own::OutputWeights => real.to_owned(),
@@ -212,7 +142,7 @@ impl<'a> Types<'a> {
         let others: Vec<String> = others
             .map(|other| format!("to_{}", identifier(&other.name)))
             .collect();
-        while self.names.iter().any(|other| *other == name) || others.contains(&name) {
+        while self.names().iter().any(|other| *other == name) || others.contains(&name) {
             name.push('_');
         }
         name
@@ -220,29 +150,12 @@ impl<'a> Types<'a> {
 
     /// Arguments that a function does not use.
     pub(super) fn unused(&self, tape: &Tape) -> Vec<String> {
-        let groups = self.groups();
         let used = tape.arguments();
-        let uses = |is: fn(&Argument) -> bool| used.iter().any(is);
-        let all = [
-            (
-                groups.time,
-                uses(|argument| matches!(argument, Argument::Time)),
-            ),
-            (
-                groups.parameters,
-                uses(|argument| matches!(argument, Argument::Parameter(_))),
-            ),
-            (
-                groups.state,
-                uses(|argument| matches!(argument, Argument::State(_))),
-            ),
-            (
-                groups.inputs,
-                uses(|argument| matches!(argument, Argument::Input(_))),
-            ),
-        ];
-        let unused = all.into_iter().filter(|(_, used)| !used);
-        unused.map(|(name, _)| name).collect()
+        let groups = text::GROUPS.into_iter().map(|(_, like)| like);
+        let all = std::iter::once((Argument::Time, self.local(Argument::Time)))
+            .chain(groups.zip(self.groups()));
+        let unused = all.filter(|(like, _)| !used.iter().any(|argument| argument.is_like(*like)));
+        unused.map(|(_, name)| name).collect()
     }
 
     /// Values of the spec.
@@ -347,7 +260,7 @@ impl<'a> Types<'a> {
     /// The Runge-Kutta step.
     pub(super) fn integrator(&self) -> String {
         STEP.replace("SIGNATURE", &self.step())
-            .replace("COUNT", &self.names.states.len().to_string())
+            .replace("COUNT", &self.names().states.len().to_string())
             .replace("PREFIX", &self.prefix)
             .replace("STATE", &self.type_name(Space::State))
             .replace("RATES", &self.type_name(Space::Rates))

@@ -1,16 +1,17 @@
 //! One function of a model: signature, rustdoc, body.
 
 use appell_spec::foreign::sentence;
+use proc_macro2::TokenStream;
 use quote::quote;
-use syn::ItemFn;
 
 use super::body::body;
 use super::error::Error;
 use super::layout::{blank_tokens, code, docs};
 use super::syntax::{ident, known};
 use super::types::{Types, result_struct};
-use crate::program::{Function, Space, Term};
+use crate::program::{Function, Term};
 use crate::tape::{Argument, OperationCount, Tape};
+use crate::text::{GROUPS, shape};
 
 /// Meanings of the rows and columns of a plain array that has no struct.
 fn rows_and_columns(function: &Function) -> Vec<String> {
@@ -56,9 +57,9 @@ pub(super) fn function(
     function: &Function,
     tape: &Tape,
     cost: &OperationCount,
-) -> Result<ItemFn, Error> {
+) -> Result<TokenStream, Error> {
     for array in &function.results {
-        let expected = types.len(array.layout);
+        let expected = shape(types.program, array.layout).iter().product();
         if expected != array.entries.len() {
             return Err(Error::Shape {
                 kind: function.kind,
@@ -83,11 +84,7 @@ pub(super) fn function(
     let about = docs(&lines);
     let blank = blank_tokens();
     let used = tape.arguments();
-    let uses = |like: Argument| {
-        let same =
-            |&other: &Argument| std::mem::discriminant(&other) == std::mem::discriminant(&like);
-        used.iter().any(same)
-    };
+    let uses = |like: Argument| used.iter().any(|argument| argument.is_like(like));
     let argument = |name: &str, used: bool| {
         if used {
             ident(name)
@@ -100,9 +97,11 @@ pub(super) fn function(
         let time = argument(time, uses(Argument::Time));
         quote!(#time: T,)
     });
-    let parameters = argument(parameters, uses(Argument::Parameter(0)));
-    let state = argument(state, uses(Argument::State(0)));
-    let inputs = argument(inputs, uses(Argument::Input(0)));
+    let groups = GROUPS.into_iter().zip([parameters, state, inputs]);
+    let groups = groups.map(|((space, like), name)| {
+        let (name, vector) = (argument(name, uses(like)), types.vector(space, &quote!(T)));
+        quote!(#name: &#vector,)
+    });
     let own = types.own(function.kind).map(|(name, type_name)| {
         let all = [
             Argument::Weight(0),
@@ -119,23 +118,20 @@ pub(super) fn function(
         }
         None => types.array_type(function.results[0].layout),
     };
-    let [parameters_type, state_type, inputs_type] =
-        [Space::Parameters, Space::State, Space::Inputs]
-            .map(|space| types.vector(space, &quote!(T)));
-    let tokens = quote! {
+    let body: TokenStream = body(types, function, tape)
+        .parse()
+        .map_err(|error: proc_macro2::LexError| Error::Syntax(error.to_string()))?;
+    Ok(quote! {
         #blank
         #about
         #[must_use]
         #[inline]
         pub fn #name<T: Real>(
             #time
-            #parameters: &#parameters_type,
-            #state: &#state_type,
-            #inputs: &#inputs_type,
+            #(#groups)*
             #own
-        ) -> #result {}
-    };
-    let mut item: ItemFn = syn::parse2(tokens).map_err(|error| Error::Syntax(error.to_string()))?;
-    item.block.stmts = body(types, function, tape);
-    Ok(item)
+        ) -> #result {
+            #body
+        }
+    })
 }

@@ -1,6 +1,6 @@
 //! Emits `INFO`: names, units, defaults and tables of a model.
 
-use appell_runtime::model::{Contact, Interpolation, ModelInfo, Quantity, Reaction};
+use appell_runtime::model::{Contact, Interpolation, ModelInfo, Quantity, Reaction, SignalTable};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -9,64 +9,62 @@ use super::syntax::{known, number};
 
 /// `INFO` and its statics.
 pub(super) fn info(info: &ModelInfo) -> TokenStream {
-    let quantities = |name: &'static str, about: &str, list: &[Quantity]| {
-        let name = known(name);
-        let about = docs(&[about.to_owned()]);
-        let blank = blank_tokens();
-        let count = Literal::usize_unsuffixed(list.len());
-        let entries = list.iter().map(quantity);
-        quote! {
-            #blank
-            #about
-            static #name: [model::Quantity; #count] = [#(#entries),*];
-        }
-    };
-    let states = quantities("STATES", "Pseudo-velocities and coordinates.", &info.states);
-    let inputs = quantities("INPUTS", "Inputs and signals.", &info.inputs);
-    let parameters = quantities("PARAMETERS", "Parameters.", &info.parameters);
-    let outputs = quantities("OUTPUTS", "Outputs.", &info.outputs);
-    let signals = signals(info);
+    let texts = info.constraint_rows.iter().map(|text| borrowed(text));
+    let orders = info.signal_inputs.iter().map(|&(signal, order)| {
+        let signal = Literal::usize_unsuffixed(signal);
+        let order = Literal::u8_unsuffixed(order);
+        quote!((#signal, #order))
+    });
+    let quantities = [
+        ("STATES", "Pseudo-velocities and coordinates.", &info.states),
+        ("INPUTS", "Inputs and signals.", &info.inputs),
+        ("PARAMETERS", "Parameters.", &info.parameters),
+        ("OUTPUTS", "Outputs.", &info.outputs),
+    ];
+    let quantities = quantities.map(|(name, about, all)| {
+        let entries = all.iter().map(quantity);
+        list(name, about, &quote!(model::Quantity), entries)
+    });
+    let statics = [
+        list(
+            "SIGNALS",
+            "Tabulated functions of time.",
+            &quote!(model::SignalTable),
+            info.signals.iter().map(signal),
+        ),
+        list(
+            "SIGNAL_INPUTS",
+            "Signal and order of derivative behind the inputs that are signals.",
+            &quote!((usize, u8)),
+            orders,
+        ),
+        list(
+            "CONSTRAINT_ROWS",
+            "Constraint rows.",
+            &quote!(model::Text),
+            texts,
+        ),
+        list(
+            "REACTIONS",
+            "Reactions in the ground.",
+            &quote!(model::Reaction),
+            info.reactions.iter().map(reaction),
+        ),
+        list(
+            "CONTACTS",
+            "Contacts, which can only push.",
+            &quote!(model::Contact),
+            info.contacts.iter().map(contact),
+        ),
+    ];
     let [name, title, source] = [&info.name, &info.title, &info.source].map(|text| borrowed(text));
     let [speeds, declared_inputs] =
         [info.speeds, info.declared_inputs].map(Literal::usize_unsuffixed);
-    let texts = |list: &[std::borrow::Cow<'static, str>]| {
-        let texts = list.iter().map(|text| borrowed(text));
-        quote!([#(#texts),*])
-    };
-    let rows = texts(&info.constraint_rows);
-    let reactions = info.reactions.iter().map(reaction);
-    let [row_count, reaction_count] =
-        [info.constraint_rows.len(), info.reactions.len()].map(Literal::usize_unsuffixed);
-    let contacts = info.contacts.iter().map(contact);
-    let contact_count = Literal::usize_unsuffixed(info.contacts.len());
-    let orders = info.signal_inputs.iter().map(|&(signal, order)| {
-        let (signal, order) = (
-            Literal::usize_unsuffixed(signal),
-            Literal::u8_unsuffixed(order),
-        );
-        quote!((#signal, #order))
-    });
-    let order_count = Literal::usize_unsuffixed(info.signal_inputs.len());
     let explicit_time = info.explicit_time;
     let blank = blank_tokens();
     quote! {
-        #states
-        #inputs
-        #parameters
-        #outputs
-        #signals
-        #blank
-        /// Signal and order of derivative behind the inputs that are signals.
-        static SIGNAL_INPUTS: [(usize, u8); #order_count] = [#(#orders),*];
-        #blank
-        /// Constraint rows.
-        static CONSTRAINT_ROWS: [model::Text; #row_count] = #rows;
-        #blank
-        /// Reactions in the ground.
-        static REACTIONS: [model::Reaction; #reaction_count] = [#(#reactions),*];
-        #blank
-        /// Contacts, which can only push.
-        static CONTACTS: [model::Contact; #contact_count] = [#(#contacts),*];
+        #(#quantities)*
+        #(#statics)*
         #blank
         /// Names, units and sizes of the model.
         pub static INFO: model::ModelInfo = model::ModelInfo {
@@ -86,6 +84,23 @@ pub(super) fn info(info: &ModelInfo) -> TokenStream {
             contacts: model::List::Borrowed(&CONTACTS),
             explicit_time: #explicit_time,
         };
+    }
+}
+
+/// A static array.
+fn list(
+    name: &'static str,
+    about: &str,
+    entry: &TokenStream,
+    entries: impl ExactSizeIterator<Item = TokenStream>,
+) -> TokenStream {
+    let name = known(name);
+    let (blank, about) = (blank_tokens(), docs(&[about.to_owned()]));
+    let count = Literal::usize_unsuffixed(entries.len());
+    quote! {
+        #blank
+        #about
+        static #name: [#entry; #count] = [#(#entries),*];
     }
 }
 
@@ -147,30 +162,21 @@ fn borrowed(text: &str) -> TokenStream {
     quote!(model::Text::Borrowed(#text))
 }
 
-fn signals(info: &ModelInfo) -> TokenStream {
-    let count = Literal::usize_unsuffixed(info.signals.len());
-    let blank = blank_tokens();
-    let tables = info.signals.iter().map(|signal| {
-        let name = borrowed(&signal.name);
-        let times = signal.times.iter().map(|&time| number(time));
-        let values = signal.values.iter().map(|&value| number(value));
-        let interpolation = known(match signal.interpolation {
-            Interpolation::Hold => "Hold",
-            Interpolation::Linear => "Linear",
-            Interpolation::Cubic => "Cubic",
-        });
-        quote! {
-            model::SignalTable {
-                name: #name,
-                times: model::List::Borrowed(&[#(#times),*]),
-                values: model::List::Borrowed(&[#(#values),*]),
-                interpolation: model::Interpolation::#interpolation,
-            }
-        }
+fn signal(signal: &SignalTable) -> TokenStream {
+    let name = borrowed(&signal.name);
+    let times = signal.times.iter().map(|&time| number(time));
+    let values = signal.values.iter().map(|&value| number(value));
+    let interpolation = known(match signal.interpolation {
+        Interpolation::Hold => "Hold",
+        Interpolation::Linear => "Linear",
+        Interpolation::Cubic => "Cubic",
     });
     quote! {
-        #blank
-        /// Tabulated functions of time.
-        static SIGNALS: [model::SignalTable; #count] = [#(#tables),*];
+        model::SignalTable {
+            name: #name,
+            times: model::List::Borrowed(&[#(#times),*]),
+            values: model::List::Borrowed(&[#(#values),*]),
+            interpolation: model::Interpolation::#interpolation,
+        }
     }
 }

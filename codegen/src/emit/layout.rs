@@ -6,25 +6,21 @@
 use appell_spec::foreign::{one_line, sentence};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
-use syn::{Attribute, Expr, Meta, token};
 
 /// The printed form of the marker.
 const BLANK_LINE: &str = "//%blank";
-const BLANK: &str = "%blank";
+/// An attribute that is printed as a blank line.
+pub(super) const BLANK: &str = "#[comment = \"%blank\"]\n";
 
 /// An attribute that is printed as a comment of one line.
-pub(super) fn comment(text: &str) -> Attribute {
-    attribute("comment", &format!(" {}", sentence(text)))
+pub(super) fn comment(text: &str) -> String {
+    let text = Literal::string(&format!(" {}", sentence(text)));
+    format!("#[comment = {text}]\n")
 }
 
-/// An attribute that is printed as a blank line.
-pub(super) fn blank() -> Attribute {
-    attribute("comment", BLANK)
-}
-
-/// [`blank`] as tokens.
+/// [`BLANK`] as tokens.
 pub(super) fn blank_tokens() -> TokenStream {
-    quote!(#[comment = #BLANK])
+    quote!(#[comment = "%blank"])
 }
 
 /// Rustdoc lines as tokens.
@@ -34,23 +30,6 @@ pub(super) fn docs(lines: &[String]) -> TokenStream {
         text => format!(" {text}"),
     });
     quote!(#(#[doc = #lines])*)
-}
-
-fn attribute(name: &str, text: &str) -> Attribute {
-    let value = syn::Lit::new(Literal::string(text));
-    Attribute {
-        pound_token: token::Pound::default(),
-        style: syn::AttrStyle::Outer,
-        bracket_token: token::Bracket::default(),
-        meta: Meta::NameValue(syn::MetaNameValue {
-            path: super::syntax::path(name),
-            eq_token: token::Eq::default(),
-            value: Expr::Lit(syn::ExprLit {
-                attrs: Vec::new(),
-                lit: value,
-            }),
-        }),
-    }
 }
 
 /// A name or a unit in rustdoc, as code.

@@ -44,17 +44,15 @@ fn table(page: &mut String, title: &str, value: &str, quantities: &[Quantity]) {
     if quantities.is_empty() {
         return;
     }
-    if value.is_empty() {
-        let _ = writeln!(
-            page,
-            "\n# {title}\n\n| name | meaning | unit |\n|---|---|---|"
-        );
+    let (column, rule) = if value.is_empty() {
+        (String::new(), "")
     } else {
-        let _ = writeln!(
-            page,
-            "\n# {title}\n\n| name | meaning | unit | {value} |\n|---|---|---|---|"
-        );
-    }
+        (format!(" {value} |"), "---|")
+    };
+    let _ = writeln!(
+        page,
+        "\n# {title}\n\n| name | meaning | unit |{column}\n|---|---|---|{rule}"
+    );
     for quantity in quantities {
         let name = code(&quantity.name);
         let (about, unit) = (escaped(&quantity.about), escaped(&quantity.unit));

@@ -1,56 +1,24 @@
 //! Emits the implementation of `Model`, which needs the standard library.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::error::Error;
 use super::layout::{blank_tokens, docs, escaped};
 use super::switching;
-use super::syntax::{ident, known, path};
+use super::syntax::{ident, known};
 use super::types::Types;
-use crate::program::{FunctionKind, Layout, Program, Space};
+use crate::program::{FunctionKind, Layout, Own, Program, Space};
+use crate::text::{shape, type_name};
 
 /// Names in the emitted text, in addition to the result types of functions, that the type of the model must not
 /// collide with.
-const TYPES: &[&str] = &[
-    "Parameters",
-    "State",
-    "Inputs",
-    "Outputs",
-    "Rates",
-    "Accelerations",
-    "CoordinateRates",
-    "GeneralizedForces",
-    "ConstraintResidual",
-    "ConstraintForces",
-    "Real",
-    "T",
-    "Default",
-    "From",
-    "Option",
-    "Result",
-    "Some",
-    "None",
-    "Ok",
-    "Err",
-    "Vec",
-    "Box",
-    "Copy",
-    "Clone",
-    "Debug",
-    "PartialEq",
-    "Model",
-    "ModelInfo",
-    "At",
-    "String",
-    "Send",
-    "Sync",
-    "Fn",
-    "Drop",
-];
+const TYPES: &str = "Parameters State Inputs Outputs Rates Accelerations CoordinateRates GeneralizedForces \
+    ConstraintResidual ConstraintForces Real T Default From Option Result Some None Ok Err Vec \
+    Box Copy Clone Debug PartialEq Model ModelInfo At String Send Sync Fn Drop";
 
 /// Name of the model's type: the mechanism's name in camel case.
-pub(super) fn type_name(types: &Types<'_>) -> String {
+pub(super) fn model_name(types: &Types<'_>) -> String {
     let camel: String = types
         .program
         .info
@@ -64,7 +32,7 @@ pub(super) fn type_name(types: &Types<'_>) -> String {
         .collect();
     let mut name = ident(&camel).to_string();
     let results = FunctionKind::ALL.map(FunctionKind::result_struct);
-    let taken = |name: &str| TYPES.contains(&name) || results.contains(&name);
+    let taken = |name: &str| TYPES.split(' ').any(|word| word == name) || results.contains(&name);
     while taken(&name) || types.is_field(&name) || name.len() < 2 {
         name.push_str("Model");
     }
@@ -73,7 +41,7 @@ pub(super) fn type_name(types: &Types<'_>) -> String {
 
 /// The unit struct and its `impl Model`.
 pub(super) fn implementation(types: &Types<'_>, runtime: &syn::Path) -> Result<TokenStream, Error> {
-    let name = path(&type_name(types));
+    let name = ident(&model_name(types));
     let title = escaped(&types.program.info.title);
     let stop = if title.ends_with(['.', '!', '?']) {
         ""
@@ -96,15 +64,15 @@ pub(super) fn implementation(types: &Types<'_>, runtime: &syn::Path) -> Result<T
         position_methods(types)?,
         provided(types, FunctionKind::Contacts, &["normals", "friction"])?,
         system_methods(types)?,
-        inverse_method(types, FunctionKind::InverseDynamics, &["demand"])?,
-        inverse_method(
+        provided(types, FunctionKind::InverseDynamics, &["demand"])?,
+        provided(
             types,
             FunctionKind::InverseDynamicsJacobians,
             &["demand", "by_state", "by_inputs", "mass"],
         )?,
         adjoint_methods(types)?,
         provided(types, FunctionKind::OutputJacobians, &["outputs", "c", "d"])?,
-        gradient_method(types, FunctionKind::OutputAdjoint)?,
+        provided(types, FunctionKind::OutputAdjoint, &[])?,
     ];
     let named = named(types, &name);
     let blank = blank_tokens();
@@ -180,7 +148,7 @@ fn call(types: &Types<'_>, kind: FunctionKind) -> TokenStream {
 
 /// Writes a result of a layout into a slice.
 fn write(types: &Types<'_>, layout: Layout, to: &TokenStream, from: &TokenStream) -> TokenStream {
-    if types.len(layout) == 0 {
+    if shape(types.program, layout).contains(&0) {
         return quote!(let _ = #to;);
     }
     match layout {
@@ -190,7 +158,7 @@ fn write(types: &Types<'_>, layout: Layout, to: &TokenStream, from: &TokenStream
         Layout::Vector(_) => quote!(write(#to, &#from.to_array());),
         Layout::Rows(..) => quote!(write(#to, #from.to_array().as_flattened());),
         Layout::Jacobian(_, columns) => {
-            let columns = known(Types::type_name(columns));
+            let columns = known(type_name(columns));
             quote!(write(#to, #from.map(#columns::to_array).to_array().as_flattened());)
         }
     }
@@ -226,17 +194,33 @@ pub(super) fn written(
     Ok(quote!(let all = #call; #(#parts)*))
 }
 
-/// A method that writes the results of the function of its name into its arguments.
+/// A method that writes the results of the function of its name into its arguments, those of gradients into the parts of
+/// one.
 fn method(types: &Types<'_>, kind: FunctionKind, arguments: &[&str]) -> Result<TokenStream, Error> {
     let name = known(kind.name());
-    let arguments: Vec<TokenStream> = (arguments.iter().map(|name| ident(name)))
+    let mut slices: Vec<TokenStream> = (arguments.iter().map(|name| ident(name)))
         .map(|name| quote!(#name))
         .collect();
-    let body = written(types, kind, &arguments)?;
+    let results = quote!(#(#slices: &mut [f64]),*);
+    let (arguments, own) = match kind.takes() {
+        None => (results, None),
+        Some(Own::Accelerations) => {
+            let given = known(type_name(Space::Accelerations));
+            let own = quote!(let accelerations = #given::from(first(accelerations)););
+            (quote!(accelerations: &[f64], #results), Some(own))
+        }
+        Some(Own::Weights | Own::OutputWeights) => {
+            slices = vec![quote!(by.x), quote!(by.u), quote!(by.p)];
+            let arguments = quote!(weights: &[f64], by: model::Gradient<'_>);
+            (arguments, Some(quote!(let weights = first(weights);)))
+        }
+    };
+    let body = written(types, kind, &slices)?;
     let blank = blank_tokens();
     Ok(quote! {
         #blank
-        fn #name(&self, at: At<'_>, #(#arguments: &mut [f64]),*) {
+        fn #name(&self, at: At<'_>, #arguments) {
+            #own
             #body
         }
     })
@@ -323,98 +307,52 @@ fn position_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     if dependent.is_empty() {
         return Ok(TokenStream::new());
     }
-    let dependent = dependent.iter().map(|&q| Literal::usize_unsuffixed(q));
     let arguments = ["residual", "jacobian"];
     let method = method(types, FunctionKind::PositionConstraints, &arguments)?;
-    let blank = blank_tokens();
-    Ok(quote! {
-        #blank
-        fn dependent_coordinates(&self) -> &[usize] {
-            &[#(#dependent),*]
-        }
-        #method
-    })
+    let dependent = list_method("dependent_coordinates", dependent);
+    Ok(quote!(#dependent #method))
 }
 
 /// Systems solved with pivoting; the trait has a default implementation for models without any.
 fn system_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
-    if types.program.function(FunctionKind::Systems).is_none() {
-        return Ok(TokenStream::new());
-    }
-    let sizes = types.program.systems.iter();
-    let sizes = sizes.map(|&size| Literal::usize_unsuffixed(size));
-    let method = method(types, FunctionKind::Systems, &["matrices"])?;
+    let kind = FunctionKind::Systems;
+    let sizes = types.program.function(kind);
+    let sizes = sizes.map(|_| list_method("system_sizes", &types.program.systems));
+    let method = provided(types, kind, &["matrices"])?;
+    Ok(quote!(#sizes #method))
+}
+
+/// A method that returns a list.
+fn list_method(name: &'static str, list: &[usize]) -> TokenStream {
+    let name = known(name);
+    let list = list.iter().map(|&one| Literal::usize_unsuffixed(one));
     let blank = blank_tokens();
-    Ok(quote! {
+    quote! {
         #blank
-        fn system_sizes(&self) -> &[usize] {
-            &[#(#sizes),*]
+        fn #name(&self) -> &[usize] {
+            &[#(#list),*]
         }
-        #method
-    })
+    }
 }
 
 /// The adjoint of the rates; the default implementation of the trait uses differences.
 fn adjoint_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     let kind = FunctionKind::Adjoint;
-    if types.program.function(kind).is_none() {
-        return Ok(TokenStream::new());
-    }
-    let method = gradient_method(types, kind)?;
     let blank = blank_tokens();
-    Ok(quote! {
-        #blank
-        fn has_adjoint(&self) -> bool {
-            true
+    let has_adjoint = types.program.function(kind).map(|_| {
+        quote! {
+            #blank
+            fn has_adjoint(&self) -> bool {
+                true
+            }
         }
-        #method
-    })
-}
-
-/// A method that writes the gradient of a weighted sum, if the program has it.
-fn gradient_method(types: &Types<'_>, kind: FunctionKind) -> Result<TokenStream, Error> {
-    if types.program.function(kind).is_none() {
-        return Ok(TokenStream::new());
-    }
-    let name = known(kind.name());
-    let body = written(types, kind, &[quote!(by.x), quote!(by.u), quote!(by.p)])?;
-    let blank = blank_tokens();
-    Ok(quote! {
-        #blank
-        fn #name(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
-            let weights = first(weights);
-            #body
-        }
-    })
-}
-
-/// A method of given pseudo-accelerations, if the program has it.
-fn inverse_method(
-    types: &Types<'_>,
-    kind: FunctionKind,
-    arguments: &[&'static str],
-) -> Result<TokenStream, Error> {
-    if types.program.function(kind).is_none() {
-        return Ok(TokenStream::new());
-    }
-    let name = known(kind.name());
-    let given = known(Types::type_name(Space::Accelerations));
-    let arguments: Vec<TokenStream> = (arguments.iter().map(|name| known(name)))
-        .map(|name| quote!(#name))
-        .collect();
-    let body = written(types, kind, &arguments)?;
-    let blank = blank_tokens();
-    Ok(quote! {
-        #blank
-        fn #name(&self, at: At<'_>, accelerations: &[f64], #(#arguments: &mut [f64]),*) {
-            let accelerations = #given::from(first(accelerations));
-            #body
-        }
-    })
+    });
+    let method = provided(types, kind, &[])?;
+    Ok(quote!(#has_adjoint #method))
 }
 
 /// The rows of a trajectory with the named entries of the model.
-fn named(types: &Types<'_>, model: &syn::Path) -> TokenStream {
+fn named(types: &Types<'_>, model: &Ident) -> TokenStream {
     let [state, inputs, outputs] = [Space::State, Space::Inputs, Space::Outputs]
         .map(|space| types.vector(space, &quote!(f64)));
     let values = match types.fields(Space::Outputs) {

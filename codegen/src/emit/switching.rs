@@ -1,6 +1,6 @@
 //! Switching functions of an emitted model; the trait has a default for models without any.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::error::Error;
@@ -9,11 +9,12 @@ use super::model::written;
 use super::syntax::known;
 use super::types::Types;
 use crate::program::{FunctionKind, Space};
+use crate::text::type_name;
 
 /// The implementation of `Switching`, and the method of `Model` that returns it.
 pub(super) fn implementation(
     types: &Types<'_>,
-    name: &syn::Path,
+    name: &Ident,
     runtime: &syn::Path,
 ) -> Result<[TokenStream; 2], Error> {
     let counts = types.program.switch_counts();
@@ -101,9 +102,15 @@ fn bounds_in_time(types: &Types<'_>) -> TokenStream {
     }
     let unknown = quote!(core::array::from_fn(|_| Enclosure::UNKNOWN));
     let call = call(types, kind, &quote!(p), [&unknown, &unknown]);
+    stored(&call, ["functions", "functions", "shapes"])
+}
+
+/// Writes both results of a call into a slice, one after the other.
+fn stored(call: &TokenStream, [slice, first, second]: [&'static str; 3]) -> TokenStream {
+    let [slice, first, second] = [slice, first, second].map(known);
     quote! {
         let all = #call;
-        for (to, from) in functions.iter_mut().zip(all.functions.into_iter().chain(all.shapes)) {
+        for (to, from) in #slice.iter_mut().zip(all.#first.into_iter().chain(all.#second)) {
             *to = from;
         }
     }
@@ -126,13 +133,8 @@ fn bounds_along(types: &Types<'_>) -> TokenStream {
     );
     let time = types.program.info.explicit_time;
     let time = time.then(|| quote!(let time = along.t;));
-    quote! {
-        #time
-        let all = #call;
-        for (to, from) in crossings.iter_mut().zip(all.crossings.into_iter().chain(all.pulses)) {
-            *to = from;
-        }
-    }
+    let stored = stored(&call, ["crossings", "crossings", "pulses"]);
+    quote!(#time #stored)
 }
 
 /// Calls a function on bounds; those of the states and the inputs are given.
@@ -143,7 +145,7 @@ fn call(
     [states, inputs]: [&TokenStream; 2],
 ) -> TokenStream {
     let arguments = [Space::Parameters, Space::State, Space::Inputs].map(|space| {
-        let name = known(Types::type_name(space));
+        let name = known(type_name(space));
         match (types.fields(space), space) {
             ([], _) => quote!(#name {}),
             (_, Space::Parameters) => quote!(#name::from(first(#p).map(Enclosure::constant))),

@@ -6,44 +6,29 @@ use appell_runtime::model::Quantity;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::body::Group;
 use super::layout::{blank_tokens, code, docs, escaped};
 use super::syntax::{ident, known, number};
 use crate::program::{Function, FunctionKind, Layout, Own, Program, Space};
-use crate::schedule::names::{ArgumentNames, Names};
-use crate::tape::Argument;
+use crate::schedule::names::Names;
+use crate::text::{Vectors, type_name};
 
 /// Names of types and fields.
 pub(super) struct Types<'a> {
     pub(super) program: &'a Program,
-    pub(super) names: ArgumentNames,
-    /// `x_dot` for every state.
-    rates: Vec<String>,
-    outputs: Vec<String>,
-    constraint_rows: Vec<String>,
-    reactions: Vec<String>,
+    pub(super) vectors: Vectors,
     arguments: [String; 4],
 }
 
 impl<'a> Types<'a> {
     pub(super) fn new(program: &'a Program) -> Self {
-        let names = ArgumentNames::of(program);
-        let info = &program.info;
-        let argument = |name: &str| unlike(&names, name);
-        let arguments = [
-            names.time.clone(),
-            argument("parameters"),
-            argument("state"),
-            argument("inputs"),
-        ];
+        let vectors = Vectors::of(program);
+        let names = &vectors.names;
+        let [parameters, state, inputs] =
+            ["parameters", "state", "inputs"].map(|name| names.free(name));
         Self {
             program,
-            rates: names.states.iter().map(|x| format!("{x}_dot")).collect(),
-            outputs: distinct(info.outputs.iter().map(|output| &*output.name)),
-            constraint_rows: distinct(info.constraint_rows.iter().map(|row| &**row)),
-            reactions: distinct(info.reactions.iter().map(|reaction| &*reaction.name)),
-            names,
-            arguments,
+            arguments: [names.time.clone(), parameters, state, inputs],
+            vectors,
         }
     }
 
@@ -52,113 +37,43 @@ impl<'a> Types<'a> {
         &self.arguments
     }
 
-    /// Whether a local of this name would shadow an argument.
-    pub(super) fn is_argument(&self, name: &str) -> bool {
-        self.names.iter().any(|other| other == name)
-    }
-
     /// Whether a struct of this name would shadow a field in destructuring patterns.
     pub(super) fn is_field(&self, name: &str) -> bool {
-        let own = [
-            &self.rates,
-            &self.outputs,
-            &self.constraint_rows,
-            &self.reactions,
-        ];
-        self.is_argument(name) || own.into_iter().flatten().any(|field| field == name)
-    }
-
-    /// The structs of the arguments.
-    pub(super) fn groups(&self) -> [Group; 3] {
-        let [_, parameters, state, inputs] = &self.arguments;
-        let group = |type_name, argument: &String, len, like| Group {
-            type_name,
-            argument: argument.clone(),
-            len,
-            like,
-        };
-        let names = &self.names;
-        [
-            group(
-                "Parameters",
-                parameters,
-                names.parameters.len(),
-                Argument::Parameter(0),
-            ),
-            group("State", state, names.states.len(), Argument::State(0)),
-            group("Inputs", inputs, names.inputs.len(), Argument::Input(0)),
-        ]
+        let vectors = &self.vectors;
+        vectors
+            .names
+            .iter()
+            .chain(vectors.results())
+            .any(|field| field == name)
     }
 
     /// Name and type of a function's additional argument.
-    pub(super) fn own(&self, kind: FunctionKind) -> Option<(String, TokenStream)> {
-        let own = kind.takes()?;
+    pub(super) fn own(&self, function: FunctionKind) -> Option<(String, TokenStream)> {
+        let own = function.takes()?;
         let list = |names: &[String]| {
             let count = proc_macro2::Literal::usize_unsuffixed(names.len());
             quote!([T; #count])
         };
-        let type_name = match own {
-            Own::Weights => list(&self.names.weights),
-            Own::OutputWeights => list(&self.names.output_weights),
+        let kind = match own {
+            Own::Weights => list(&self.vectors.names.weights),
+            Own::OutputWeights => list(&self.vectors.names.output_weights),
             Own::Accelerations => self.vector(Space::Accelerations, &quote!(T)),
         };
-        Some((unlike(&self.names, own.name()), type_name))
+        Some((self.vectors.names.free(own.name()), kind))
     }
 
-    /// Name of the struct of a vector.
-    pub(super) fn type_name(space: Space) -> &'static str {
-        match space {
-            Space::Parameters => "Parameters",
-            Space::State => "State",
-            Space::Inputs => "Inputs",
-            Space::Outputs => "Outputs",
-            Space::Rates => "Rates",
-            Space::Accelerations => "Accelerations",
-            Space::CoordinateRates => "CoordinateRates",
-            Space::GeneralizedForces => "GeneralizedForces",
-            Space::ConstraintRows => "ConstraintResidual",
-            Space::Reactions => "ConstraintForces",
-        }
-    }
-
-    /// Its fields.
+    /// The fields of a vector.
     pub(super) fn fields(&self, space: Space) -> &[String] {
-        let names = &self.names;
-        let speeds = self.program.info.speeds.min(names.states.len());
-        match space {
-            Space::Parameters => &names.parameters,
-            Space::State => &names.states,
-            Space::Inputs => &names.inputs,
-            Space::Outputs => &self.outputs,
-            Space::Rates => &self.rates,
-            Space::Accelerations => &self.rates[..speeds],
-            Space::CoordinateRates => &self.rates[speeds..],
-            Space::GeneralizedForces => &names.states[..speeds],
-            Space::ConstraintRows => &self.constraint_rows,
-            Space::Reactions => &self.reactions,
-        }
+        self.vectors.entries(space)
     }
 
     /// `Name<entry>`; a vector without entries is a `Name`.
     pub(super) fn vector(&self, space: Space, entry: &TokenStream) -> TokenStream {
-        let name = known(Self::type_name(space));
+        let name = known(type_name(space));
         if self.fields(space).is_empty() {
             quote!(#name)
         } else {
             quote!(#name<#entry>)
-        }
-    }
-
-    /// The number of entries of a layout.
-    pub(super) fn len(&self, layout: Layout) -> usize {
-        let len = |space| self.fields(space).len();
-        match layout {
-            Layout::Scalar => 1,
-            Layout::List(n) => n,
-            Layout::Matrix(rows, columns) => rows * columns,
-            Layout::Vector(space) => len(space),
-            Layout::Rows(space, columns) => len(space) * columns,
-            Layout::Jacobian(rows, columns) => len(rows) * len(columns),
         }
     }
 
@@ -184,8 +99,8 @@ impl<'a> Types<'a> {
         }
     }
 
-    /// A struct, with a sentence for every field.
-    fn structure(&self, space: Space) -> Vector<'_> {
+    /// A struct, with a sentence for every field. Without fields it has no type parameter.
+    fn structure(&self, space: Space) -> TokenStream {
         let info = &self.program.info;
         let (about, entry): (_, fn(&Quantity) -> String) = match space {
             Space::Parameters => ("Parameters p, in SI.", sentence),
@@ -215,7 +130,7 @@ impl<'a> Types<'a> {
                 sentence,
             ),
         };
-        let texts = match space {
+        let texts: Vec<String> = match space {
             Space::ConstraintRows => (info.constraint_rows.iter())
                 .map(|row| format!("Row {}.", code(row)))
                 .collect(),
@@ -231,12 +146,26 @@ impl<'a> Types<'a> {
                 .collect(),
             _ => space.quantities(info).iter().map(entry).collect(),
         };
-        Vector {
-            name: Self::type_name(space),
-            about,
-            fields: self.fields(space),
-            texts,
-            default: space != Space::Parameters,
+        let name = known(type_name(space));
+        let blank = blank_tokens();
+        let about = docs(&[about.to_owned()]);
+        if self.fields(space).is_empty() {
+            return quote! {
+                #blank
+                #about
+                #[derive(Debug, Clone, Copy, PartialEq, Default)]
+                pub struct #name {}
+            };
+        }
+        // The default of the parameters is not zero.
+        let default = (space != Space::Parameters).then(|| quote!(, Default));
+        let fields = self.fields(space).iter().map(|field| ident(field));
+        let texts = texts.iter().map(|text| docs(std::slice::from_ref(text)));
+        quote! {
+            #blank
+            #about
+            #[derive(Debug, Clone, Copy, PartialEq #default)]
+            pub struct #name<T> { #(#texts pub #fields: T),* }
         }
     }
 
@@ -273,20 +202,20 @@ impl<'a> Types<'a> {
         let info = &self.program.info;
         let mut items = Vec::new();
         for &space in &spaces {
-            items.push(self.structure(space).tokens());
+            items.push(self.structure(space));
             match space {
                 Space::Parameters => items.push(spec_values(
                     &quote!(Default for Parameters<f64>),
                     &quote!(fn default),
                     "The values of the spec.",
-                    &self.names.parameters,
+                    &self.vectors.names.parameters,
                     &info.parameters,
                 )),
                 Space::State => items.push(spec_values(
                     &quote!(State<f64>),
                     &quote!(#[must_use] pub fn initial),
                     "The initial state of the spec; the default is zero.",
-                    &self.names.states,
+                    &self.vectors.names.states,
                     &info.states,
                 )),
                 Space::Rates => items.push(self.parts_of_rates()),
@@ -300,7 +229,7 @@ impl<'a> Types<'a> {
     fn parts_of_rates(&self) -> TokenStream {
         let blank = blank_tokens();
         let method = |name: &'static str, about: &'static str, space| {
-            let (name, type_name) = (known(name), known(Self::type_name(space)));
+            let (name, structure) = (known(name), known(type_name(space)));
             let entries = self.vector(space, &quote!(T));
             let fields: Vec<_> = self.fields(space).iter().map(|f| ident(f)).collect();
             let about = docs(&[about.to_owned()]);
@@ -309,7 +238,7 @@ impl<'a> Types<'a> {
                 #about
                 #[must_use]
                 pub fn #name(self) -> #entries {
-                    #type_name { #(#fields: self.#fields),* }
+                    #structure { #(#fields: self.#fields),* }
                 }
             }
         };
@@ -340,13 +269,17 @@ impl<'a> Types<'a> {
     ) -> Vec<TokenStream> {
         let spaces = Self::spaces(functions, named);
         let rates = spaces.contains(&Space::Rates);
-        spaces
-            .iter()
-            .map(|&space| {
-                let moved = (rates && space == Space::State).then_some("Rates");
-                self.structure(space).arithmetic(runtime, moved)
-            })
-            .collect()
+        let conversion = |&space: &Space| {
+            let name = known(type_name(space));
+            let blank = blank_tokens();
+            let fields = self.fields(space).iter().map(|field| ident(field));
+            let moved = (rates && space == Space::State).then(|| quote!(, Rates));
+            quote! {
+                #blank
+                #runtime::vector!(#name { #(#fields),* } #moved);
+            }
+        };
+        spaces.iter().map(conversion).collect()
     }
 
     /// Unique field names of the results of a function.
@@ -388,21 +321,6 @@ pub(super) fn result_struct(function: &Function) -> Option<&'static str> {
     (function.results.len() != 1).then(|| function.kind.result_struct())
 }
 
-/// `wanted`, made different from all arguments.
-fn unlike(names: &ArgumentNames, wanted: &str) -> String {
-    let mut name = wanted.to_owned();
-    while names.iter().any(|other| *other == name) {
-        name.push('_');
-    }
-    name
-}
-
-/// Unique identifiers of names.
-fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut taken = Names::default();
-    names.map(|name| taken.fresh(name)).collect()
-}
-
 /// A constructor of a struct with the values of the spec.
 fn spec_values(
     implementation: &TokenStream,
@@ -424,61 +342,6 @@ fn spec_values(
             #signature() -> Self {
                 Self { #(#fields: #values),* }
             }
-        }
-    }
-}
-
-/// A struct of scalars.
-struct Vector<'a> {
-    name: &'static str,
-    about: &'static str,
-    fields: &'a [String],
-    /// A sentence for each field.
-    texts: Vec<String>,
-    /// Whether its default is zero.
-    default: bool,
-}
-
-impl Vector<'_> {
-    /// The struct. Without fields it has no type parameter.
-    fn tokens(&self) -> TokenStream {
-        let type_name = known(self.name);
-        let blank = blank_tokens();
-        let about = docs(&[self.about.to_owned()]);
-        if self.fields.is_empty() {
-            return quote! {
-                #blank
-                #about
-                #[derive(Debug, Clone, Copy, PartialEq, Default)]
-                pub struct #type_name {}
-            };
-        }
-        let default = self.default.then(|| quote!(, Default));
-        let fields = self.fields.iter().map(|field| ident(field));
-        let texts = self
-            .texts
-            .iter()
-            .map(|text| docs(std::slice::from_ref(text)));
-        quote! {
-            #blank
-            #about
-            #[derive(Debug, Clone, Copy, PartialEq #default)]
-            pub struct #type_name<T> { #(#texts pub #fields: T),* }
-        }
-    }
-
-    /// The arithmetic of a vector.
-    fn arithmetic(&self, runtime: &syn::Path, moved: Option<&'static str>) -> TokenStream {
-        let name = known(self.name);
-        let blank = blank_tokens();
-        let fields = self.fields.iter().map(|field| ident(field));
-        let moved = moved.map(|rates| {
-            let rates = known(rates);
-            quote!(, #rates)
-        });
-        quote! {
-            #blank
-            #runtime::vector!(#name { #(#fields),* } #moved);
         }
     }
 }

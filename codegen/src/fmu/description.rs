@@ -88,66 +88,54 @@ fn described(program: &Program, variables: &Variables, units: &mut Units) -> Vec
     let mut all = vec![
         variable(variables.time, Variables::TIME)
             .with("description", "time")
-            .with("causality", "independent")
-            .with("variability", "continuous")
+            .varying("independent")
             .with("unit", units.of_time()),
     ];
     for ((k, parameter), fixed) in info.parameters.iter().enumerate().zip(&variables.fixed) {
         let variability = if *fixed { "fixed" } else { "tunable" };
-        let element = quantity(parameter, variables.parameters + k, units)
-            .with("causality", "parameter")
-            .with("variability", variability)
-            .with("start", number(parameter.value));
-        all.push(element);
+        all.push(
+            quantity(parameter, variables.parameters + k, units)
+                .with("causality", "parameter")
+                .with("variability", variability)
+                .with("start", number(parameter.value)),
+        );
     }
     let inputs = &info.inputs[..info.declared_inputs];
-    for (k, input) in inputs.iter().enumerate() {
-        let element = quantity(input, variables.inputs + k, units)
-            .with("causality", "input")
-            .with("variability", "continuous")
-            .with("start", number(0.0));
-        all.push(element);
-    }
-    for (k, state) in info.states.iter().enumerate() {
+    all.extend(inputs.iter().enumerate().map(|(k, input)| {
+        quantity(input, variables.inputs + k, units)
+            .varying("input")
+            .with("start", number(0.0))
+    }));
+    all.extend(info.states.iter().enumerate().map(|(k, state)| {
         let dependent =
             (k.checked_sub(info.speeds)).is_some_and(|q| program.dependent.contains(&q));
-        let initial = if dependent { "approx" } else { "exact" };
-        let element = quantity(state, variables.states + k, units)
-            .with("causality", "output")
-            .with("variability", "continuous")
-            .with("initial", initial)
-            .with("start", number(state.value));
-        all.push(element);
-    }
-    for (k, state) in info.states.iter().enumerate() {
-        let element = variable(&format!("der({})", state.name), variables.rates + k)
+        quantity(state, variables.states + k, units)
+            .varying("output")
+            .with("initial", if dependent { "approx" } else { "exact" })
+            .with("start", number(state.value))
+    }));
+    all.extend(info.states.iter().enumerate().map(|(k, state)| {
+        variable(&format!("der({})", state.name), variables.rates + k)
             .with("description", format!("rate of {}", state.name))
-            .with("causality", "local")
-            .with("variability", "continuous")
+            .varying("local")
             .with("initial", "calculated")
             .maybe("unit", units.of_rate(state))
-            .with("derivative", variables.states + k);
-        all.push(element);
-    }
-    for (k, output) in info.outputs.iter().enumerate() {
-        let element = quantity(output, variables.outputs + k, units)
-            .with("causality", "output")
-            .with("variability", "continuous")
-            .with("initial", "calculated");
-        all.push(element);
-    }
-    for reference in variables.switches..variables.end {
+            .with("derivative", variables.states + k)
+    }));
+    all.extend(info.outputs.iter().enumerate().map(|(k, output)| {
+        quantity(output, variables.outputs + k, units)
+            .varying("output")
+            .with("initial", "calculated")
+    }));
+    all.extend((variables.switches..variables.end).map(|reference| {
         let name = format!("switch[{}]", reference - variables.switches + 1);
-        let element = variable(&name, reference)
-            .with(
-                "description",
-                "event indicator: negative where time has switched the equations since the last event",
-            )
-            .with("causality", "local")
-            .with("variability", "continuous")
-            .with("initial", "calculated");
-        all.push(element);
-    }
+        let about =
+            "event indicator: negative where time has switched the equations since the last event";
+        variable(&name, reference)
+            .with("description", about)
+            .varying("local")
+            .with("initial", "calculated")
+    }));
     all
 }
 
@@ -155,6 +143,14 @@ fn variable(name: &str, reference: usize) -> Element {
     Element::new("Float64")
         .with("name", name)
         .with("valueReference", reference)
+}
+
+impl Element {
+    /// Adds the causality of a variable that varies continuously.
+    fn varying(self, causality: &'static str) -> Self {
+        self.with("causality", causality)
+            .with("variability", "continuous")
+    }
 }
 
 /// A quantity of the spec, with its range.

@@ -6,26 +6,17 @@ use super::xml::Element;
 use crate::program::{Function, FunctionKind, Program};
 use crate::symbolic::{self, Expr, Graph, Node, SymbolId};
 
-/// The dependencies of a variable.
-#[derive(Debug, Default)]
-struct Dependencies {
-    on: Vec<(usize, &'static str)>,
-}
+/// The dependencies of a variable: value references and kinds.
+type Dependencies = Vec<(usize, &'static str)>;
 
-impl Dependencies {
-    fn add(&mut self, reference: usize, kind: &'static str) {
-        self.on.push((reference, kind));
-    }
-
-    fn element(mut self, name: &'static str, reference: usize) -> Element {
-        self.on.sort_unstable();
-        let list = |texts: Vec<String>| texts.join(" ");
-        let on = self.on.iter().map(|(on, _)| on.to_string()).collect();
-        let kinds = self.on.iter().map(|(_, kind)| (*kind).to_owned()).collect();
-        unknown(name, reference)
-            .with("dependencies", list(on))
-            .with("dependenciesKind", list(kinds))
-    }
+fn element(name: &'static str, reference: usize, mut on: Dependencies) -> Element {
+    on.sort_unstable();
+    let list = |texts: Vec<String>| texts.join(" ");
+    let references = on.iter().map(|(on, _)| on.to_string()).collect();
+    let kinds = on.iter().map(|(_, kind)| (*kind).to_owned()).collect();
+    unknown(name, reference)
+        .with("dependencies", list(references))
+        .with("dependenciesKind", list(kinds))
 }
 
 fn unknown(name: &'static str, reference: usize) -> Element {
@@ -100,7 +91,7 @@ impl Structure<'_> {
     fn of(&self, rows: &Rows<'_>, index: usize) -> Dependencies {
         let (program, variables) = (self.program, self.variables);
         let arguments = &program.arguments;
-        let mut found = Dependencies::default();
+        let mut found = Dependencies::new();
         let Some(value) = rows.values.get(index) else {
             return found;
         };
@@ -115,7 +106,7 @@ impl Structure<'_> {
                 }
                 let derivative = derivatives.get(index * symbols.len() + k);
                 if let Some(kind) = kind(value, symbol, derivative) {
-                    found.add(first + k, kind);
+                    found.push((first + k, kind));
                 }
             }
         }
@@ -123,7 +114,7 @@ impl Structure<'_> {
         let of_time = [signals, &[arguments.time]].concat();
         let (graph, value) = value;
         if graph.mentions(value, &of_time) {
-            found.add(Variables::TIME, "dependent");
+            found.push((Variables::TIME, "dependent"));
         }
         found
     }
@@ -139,10 +130,10 @@ impl Structure<'_> {
         for (k, &parameter) in self.program.arguments.parameters.iter().enumerate() {
             let value = rows.values.get(index);
             if value.is_some_and(|(graph, value)| graph.mentions(value, &[parameter])) {
-                found.add(self.variables.parameters + k, "dependent");
+                found.push((self.variables.parameters + k, "dependent"));
             }
         }
-        found.element("InitialUnknown", reference)
+        element("InitialUnknown", reference, found)
     }
 }
 
@@ -163,22 +154,17 @@ pub(super) fn structure(program: &Program, variables: &Variables) -> Element {
         by_input: entries(FunctionKind::OutputJacobians, 2),
     };
     let all = |rows: &Rows<'_>| 0..rows.values.len();
-    let states = (variables.states..variables.rates).map(|state| {
-        let mut itself = Dependencies::default();
-        itself.add(state, "constant");
-        itself.element("Output", state)
-    });
+    let states = (variables.states..variables.rates)
+        .map(|state| element("Output", state, vec![(state, "constant")]));
     let now = |name: &'static str, rows: &Rows<'_>, k: usize| {
-        structure.of(rows, k).element(name, rows.first + k)
+        element(name, rows.first + k, structure.of(rows, k))
     };
     let speeds = program.info.speeds;
     let dependent = program.dependent.iter();
     let dependent = dependent.map(|q| unknown("InitialUnknown", variables.states + speeds + q));
-    let switches = (variables.switches..variables.end).map(|switch| {
-        let mut of_time = Dependencies::default();
-        of_time.add(Variables::TIME, "dependent");
-        of_time.element("EventIndicator", switch)
-    });
+    let of_time = vec![(Variables::TIME, "dependent")];
+    let switches = (variables.switches..variables.end)
+        .map(|switch| element("EventIndicator", switch, of_time.clone()));
     Element::new("ModelStructure")
         .holding(states)
         .holding(all(&outputs).map(|k| now("Output", &outputs, k)))

@@ -19,6 +19,7 @@ const MOST_ARGUMENTS: usize = 1 << 24;
 #[derive(Debug)]
 pub struct Checked<'a> {
     pub(super) tape: &'a Tape,
+    sizes: Sizes,
     /// Operations, without arguments, numbers and parts.
     pub(super) operations: usize,
     /// Rows of the largest system.
@@ -62,7 +63,7 @@ impl From<&ModelInfo> for Sizes {
 
 /// Checks a tape of a model with arguments of these sizes.
 pub fn check(tape: &Tape, sizes: Sizes) -> Result<Checked<'_>, JitError> {
-    let mut checker = Checker {
+    let mut checked = Checked {
         tape,
         sizes,
         operations: 0,
@@ -70,30 +71,17 @@ pub fn check(tape: &Tape, sizes: Sizes) -> Result<Checked<'_>, JitError> {
         weights: 0,
     };
     for (place, operation) in (0..).map(Value).zip(&tape.operations) {
-        checker.operation(place, operation)?;
+        checked.operation(place, operation)?;
     }
     let end = Value(u32::try_from(tape.operations.len()).unwrap_or(u32::MAX));
     for result in &tape.results {
-        checker.count(result.entries.len())?;
-        checker.numbers(&result.entries, end)?;
+        checked.count(result.entries.len())?;
+        checked.numbers(&result.entries, end)?;
     }
-    Ok(Checked {
-        tape,
-        operations: checker.operations,
-        rows: checker.rows,
-        weights: checker.weights,
-    })
+    Ok(checked)
 }
 
-struct Checker<'a> {
-    tape: &'a Tape,
-    sizes: Sizes,
-    operations: usize,
-    rows: usize,
-    weights: usize,
-}
-
-impl Checker<'_> {
+impl Checked<'_> {
     fn operation(&mut self, place: Value, operation: &Operation) -> Result<(), JitError> {
         match operation {
             Operation::Argument(argument) => self.argument(*argument),
@@ -124,21 +112,15 @@ impl Checker<'_> {
                 let is_part = *whole < place
                     && whole.part(*index) == place
                     && (*index as usize) < self.tape.operation(*whole).parts();
-                is_part
-                    .then_some(())
-                    .ok_or(JitError::MisplacedPart { value: place.0 })
+                ensure(is_part, || JitError::MisplacedPart { value: place.0 })
             }
         }
     }
 
     fn factorise(&mut self, place: Value, matrix: &[Value]) -> Result<(), JitError> {
         let rows = matrix.len().isqrt();
-        if rows > MOST_ROWS {
-            return Err(JitError::TooManyRows {
-                rows,
-                most: MOST_ROWS,
-            });
-        }
+        let most = MOST_ROWS;
+        ensure(rows <= most, || JitError::TooManyRows { rows, most })?;
         shape(place, (rows * rows).max(1), matrix.len())?;
         // Includes the factors: each factorisation has its own on the stack.
         self.count(3 * matrix.len())?;
@@ -169,22 +151,18 @@ impl Checker<'_> {
         let next = self.tape.operations.iter().skip(whole.index() + 1);
         let found = next.zip(0..).take(count);
         let found = found.filter(|&(part, index)| *part == Operation::Part(whole, index));
-        if found.count() == count {
-            Ok(())
-        } else {
-            Err(JitError::MisplacedPart { value: whole.0 })
-        }
+        ensure(found.count() == count, || JitError::MisplacedPart {
+            value: whole.0,
+        })
     }
 
     fn count(&mut self, operations: usize) -> Result<(), JitError> {
         self.operations += operations;
-        if self.operations > MOST_OPERATIONS {
-            return Err(JitError::TooManyOperations {
-                operations: self.operations,
-                most: MOST_OPERATIONS,
-            });
-        }
-        Ok(())
+        let (operations, most) = (self.operations, MOST_OPERATIONS);
+        ensure(operations <= most, || JitError::TooManyOperations {
+            operations,
+            most,
+        })
     }
 
     /// Operands are numbers computed before `place`.
@@ -214,22 +192,19 @@ impl Checker<'_> {
             }
         };
         let index = index as usize;
-        if index < len.min(MOST_ARGUMENTS) {
-            Ok(())
-        } else {
-            Err(JitError::UnknownArgument { what, index, len })
-        }
+        let exists = index < len.min(MOST_ARGUMENTS);
+        ensure(exists, || JitError::UnknownArgument { what, index, len })
     }
 }
 
 fn shape(place: Value, expected: usize, found: usize) -> Result<(), JitError> {
-    if expected == found {
-        Ok(())
-    } else {
-        Err(JitError::SystemShape {
-            value: place.0,
-            expected,
-            found,
-        })
-    }
+    ensure(expected == found, || JitError::SystemShape {
+        value: place.0,
+        expected,
+        found,
+    })
+}
+
+fn ensure(holds: bool, error: impl FnOnce() -> JitError) -> Result<(), JitError> {
+    if holds { Ok(()) } else { Err(error()) }
 }

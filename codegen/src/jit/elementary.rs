@@ -25,43 +25,41 @@ pub(super) type Binary = extern "C" fn(f64, f64) -> f64;
 /// Writes two numbers for one argument.
 pub(super) type Pair = unsafe extern "C" fn(f64, *mut [f64; 2]);
 
-impl Elementary {
+/// The routines of a set of elementary functions.
+pub(super) struct Routines {
     /// The function to call. `None` if inline instructions compute it.
-    pub(super) fn unary(self, function: Function) -> Option<Unary> {
-        match self {
-            Self::Standard => unary::<Standard>(function),
-            Self::Own => unary::<Own>(function),
-        }
-    }
-
+    pub(super) unary: fn(Function) -> Option<Unary>,
     /// Angle of the point (second, first).
-    pub(super) fn atan2(self) -> Binary {
-        match self {
-            Self::Standard => atan2::<Standard>,
-            Self::Own => atan2::<Own>,
-        }
-    }
-
+    pub(super) atan2: Binary,
     /// Power with a real exponent.
-    pub(super) fn powf(self) -> Binary {
-        match self {
-            Self::Standard => powf::<Standard>,
-            Self::Own => powf::<Own>,
+    pub(super) powf: Binary,
+    /// Sine and cosine.
+    pub(super) sin_cos: Pair,
+}
+
+impl Routines {
+    fn of<F: Blocks>() -> Self {
+        Self {
+            unary: unary::<F>,
+            atan2: atan2::<F>,
+            powf: powf::<F>,
+            sin_cos: sin_cos::<F>,
         }
     }
+}
 
-    /// Sine and cosine.
-    pub(super) fn sin_cos(self) -> Pair {
+impl Elementary {
+    pub(super) fn routines(self) -> Routines {
         match self {
-            Self::Standard => sin_cos::<Standard>,
-            Self::Own => sin_cos::<Own>,
+            Self::Standard => Routines::of::<Standard>(),
+            Self::Own => Routines::of::<Own>(),
         }
     }
 }
 
 // A block of one number, so that the processor's vector instructions with fused multiply-adds are used.
 macro_rules! shims {
-    ($($name:ident),+) => {
+    ($($function:ident $name:ident),+) => {
         $(
             extern "C" fn $name<F: Blocks>(x: f64) -> f64 {
                 let mut value = [0.0];
@@ -69,26 +67,20 @@ macro_rules! shims {
                 value[0]
             }
         )+
+
+        fn unary<F: Blocks>(function: Function) -> Option<Unary> {
+            Some(match function {
+                $(Function::$function => $name::<F>,)+
+                Function::Sqrt | Function::Abs | Function::Sign => return None,
+            })
+        }
     };
 }
 
-shims!(sin, cos, asin, acos, atan, sinh, cosh, tanh, exp, ln);
-
-fn unary<F: Blocks>(function: Function) -> Option<Unary> {
-    Some(match function {
-        Function::Sin => sin::<F>,
-        Function::Cos => cos::<F>,
-        Function::Asin => asin::<F>,
-        Function::Acos => acos::<F>,
-        Function::Atan => atan::<F>,
-        Function::Sinh => sinh::<F>,
-        Function::Cosh => cosh::<F>,
-        Function::Tanh => tanh::<F>,
-        Function::Exp => exp::<F>,
-        Function::Ln => ln::<F>,
-        Function::Sqrt | Function::Abs | Function::Sign => return None,
-    })
-}
+shims!(
+    Sin sin, Cos cos, Asin asin, Acos acos, Atan atan, Sinh sinh, Cosh cosh, Tanh tanh, Exp exp,
+    Ln ln
+);
 
 extern "C" fn atan2<F: Blocks>(y: f64, x: f64) -> f64 {
     let mut value = [0.0];

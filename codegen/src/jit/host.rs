@@ -54,15 +54,8 @@ fn detect(is_long: bool) -> Result<OwnedTargetIsa, JitError> {
     // Long functions spill to frames of many pages: probe each page inline.
     flags.set("probestack_strategy", "inline")?;
     // Panics never unwind through the code.
-    flags.set("unwind_info", if cfg!(windows) { "true" } else { "false" })?;
-    flags.set(
-        "enable_verifier",
-        if cfg!(debug_assertions) {
-            "true"
-        } else {
-            "false"
-        },
-    )?;
+    flags.set("unwind_info", &cfg!(windows).to_string())?;
+    flags.set("enable_verifier", &cfg!(debug_assertions).to_string())?;
     let builder = cranelift_native::builder().map_err(|reason| JitError::Host { reason })?;
     Ok(builder.finish(settings::Flags::new(flags))?)
 }

@@ -17,8 +17,7 @@ use crate::tapes::Tapes;
 ///
 /// The rates are compiled immediately, every other function is derived and compiled at its first use: most users need
 /// few of them, and finding a short tape for all derivatives takes longer than compiling it. Concurrent calls of the same function
-/// wait for its compilation. Functions that are too long to be compiled are interpreted with the same results;
-/// [`Self::interpreted`] lists these.
+/// wait for its compilation. Functions that are too long to be compiled are interpreted with the same results.
 ///
 /// [`Self::without`] specialises it for parameters that are zero.
 pub type JitModel = ProgramModel<Jit>;
@@ -112,13 +111,6 @@ impl ProgramModel<Jit> {
         };
         Self::of(self.tapes.clone(), engine)
     }
-
-    /// The functions used so far that are interpreted, with the reason.
-    pub fn interpreted(&self) -> impl Iterator<Item = (FunctionKind, &JitError)> {
-        FunctionKind::ALL
-            .into_iter()
-            .filter_map(|kind| Some((kind, self.engine.parts[kind as usize].reason()?)))
-    }
 }
 
 impl Jit {
@@ -152,7 +144,7 @@ impl Engine for Jit {
         let engine = self.at(at.p);
         engine.parts[kind as usize]
             .ready(|| engine.own(kind, tape), engine.sizes)
-            .call(at, own, out);
+            .call_weighted(at, own, out);
     }
 
     fn tape<'t>(&'t self, kind: FunctionKind, tape: &'t Tape, p: &[f64]) -> &'t Tape {

@@ -10,23 +10,28 @@ use super::elementary::Elementary;
 use super::host::{self, Use};
 use super::memory::Code;
 use super::translate::{signature, translate};
-use crate::tape::Tape;
+use crate::tape::{Tape, interpret_into};
 
 /// `t`, states, inputs, parameters, weights, addresses of the results.
 type Entry =
     unsafe extern "C" fn(f64, *const f64, *const f64, *const f64, *const f64, *const *mut f64);
 
-/// One tape in machine code. The code lives as long as this value; several threads may call it
+/// One tape in machine code, or interpreted. The code lives as long as this value; several threads may call it
 /// at the same time.
 #[derive(Debug)]
 pub struct NativeFunction {
-    entry: Entry,
+    how: How,
     sizes: Sizes,
     /// The number of weights used.
     weights: usize,
     /// Lengths of the results.
     results: Vec<usize>,
-    _code: Code,
+}
+
+#[derive(Debug)]
+enum How {
+    Native { entry: Entry, _code: Code },
+    Interpreted(Tape),
 }
 
 impl NativeFunction {
@@ -64,13 +69,25 @@ impl NativeFunction {
         let code = Code::new(module);
         let entry = defined?;
         Ok(Self {
-            // SAFETY: the code was compiled with `signature`, which is that of `Entry`.
-            entry: unsafe { std::mem::transmute::<*const u8, Entry>(entry) },
+            how: How::Native {
+                // SAFETY: the code was compiled with `signature`, which is that of `Entry`.
+                entry: unsafe { std::mem::transmute::<*const u8, Entry>(entry) },
+                _code: code,
+            },
             sizes,
             weights: checked.weights,
             results: tape.lengths(),
-            _code: code,
         })
+    }
+
+    /// A function that is interpreted, as one that cannot be compiled.
+    pub fn interpreted(tape: &Tape, sizes: Sizes) -> Self {
+        Self {
+            how: How::Interpreted(tape.clone()),
+            sizes,
+            weights: 0,
+            results: tape.lengths(),
+        }
     }
 
     /// Evaluates the function: one slice for each result of the tape, in its order.
@@ -94,10 +111,14 @@ impl NativeFunction {
         &self,
         at: At<'_>,
         weights: &[f64],
-        results: [&mut [f64]; N],
+        mut results: [&mut [f64]; N],
     ) {
         check_lengths(at, self.sizes, &results, &self.results);
         check_weights(weights, self.weights);
+        let entry = match &self.how {
+            How::Native { entry, .. } => entry,
+            How::Interpreted(tape) => return interpret_into(tape, at, weights, &mut results),
+        };
         let results = results.map(<[f64]>::as_mut_ptr);
         // SAFETY: the tape's check bounds every read by `sizes` and by the weights that it
         // counted, and the translation writes
@@ -105,7 +126,7 @@ impl NativeFunction {
         // memory is valid and that results overlap neither each other nor the arguments. The code
         // is alive while `self` is.
         unsafe {
-            (self.entry)(
+            entry(
                 at.t,
                 at.x.as_ptr(),
                 at.u.as_ptr(),
@@ -119,7 +140,7 @@ impl NativeFunction {
 
 /// Panics if slices have other lengths than the function requires.
 #[inline]
-pub(super) fn check_lengths(at: At<'_>, sizes: Sizes, out: &[&mut [f64]], results: &[usize]) {
+fn check_lengths(at: At<'_>, sizes: Sizes, out: &[&mut [f64]], results: &[usize]) {
     let found = Sizes {
         states: at.x.len(),
         inputs: at.u.len(),
@@ -139,7 +160,7 @@ pub(super) fn check_lengths(at: At<'_>, sizes: Sizes, out: &[&mut [f64]], result
 
 /// Panics if there are fewer weights than a function uses.
 #[inline]
-pub(super) fn check_weights(weights: &[f64], used: usize) {
+fn check_weights(weights: &[f64], used: usize) {
     assert!(
         weights.len() >= used,
         "weights: {} given, {used} used",

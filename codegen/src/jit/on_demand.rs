@@ -3,35 +3,16 @@
 use std::fmt;
 use std::sync::OnceLock;
 
-use appell_runtime::model::At;
-
 use super::host::Use;
-use super::native::check_lengths;
 use super::{Elementary, JitError, NativeFunction, Sizes};
-use crate::tape::{Tape, interpret_weighted};
+use crate::tape::Tape;
 
 /// A function, compiled at its first use.
 pub(super) struct OnDemand {
     of: Use,
     /// The tape, if it is not that of the model.
     tape: OnceLock<Tape>,
-    ready: OnceLock<Ready>,
-}
-
-/// A function that can be evaluated.
-pub(super) enum Ready {
-    /// Compiled.
-    Native(NativeFunction),
-    /// Interpreted, because compilation failed.
-    Interpreted {
-        tape: Tape,
-        /// Lengths of the arguments.
-        sizes: Sizes,
-        /// Lengths of the results.
-        results: Vec<usize>,
-        /// Why compilation failed.
-        reason: JitError,
-    },
+    ready: OnceLock<NativeFunction>,
 }
 
 impl OnDemand {
@@ -51,58 +32,24 @@ impl OnDemand {
     /// Compiles the function now, or returns why this is impossible.
     pub(super) fn compile(&self, tape: &Tape, sizes: Sizes) -> Result<(), JitError> {
         let native = NativeFunction::compile(tape, sizes)?;
-        self.ready.get_or_init(|| Ready::Native(native));
+        self.ready.get_or_init(|| native);
         Ok(())
     }
 
     /// The function, compiled if that is possible.
     #[inline]
-    pub(super) fn ready<'t>(&self, tape: impl FnOnce() -> &'t Tape, sizes: Sizes) -> &Ready {
-        self.ready.get_or_init(|| Ready::of(tape(), sizes, self.of))
+    pub(super) fn ready<'t>(
+        &self,
+        tape: impl FnOnce() -> &'t Tape,
+        sizes: Sizes,
+    ) -> &NativeFunction {
+        self.ready.get_or_init(|| self.made(tape(), sizes))
     }
 
-    /// Why the function is interpreted, if it is.
-    pub(super) fn reason(&self) -> Option<&JitError> {
-        match self.ready.get()? {
-            Ready::Native(_) => None,
-            Ready::Interpreted { reason, .. } => Some(reason),
-        }
-    }
-}
-
-impl Ready {
-    /// Compiles a tape if that is possible.
     #[cold]
-    fn of(tape: &Tape, sizes: Sizes, of: Use) -> Self {
-        match NativeFunction::compile_for(tape, sizes, Elementary::Standard, of) {
-            Ok(native) => Self::Native(native),
-            Err(reason) => Self::Interpreted {
-                results: tape.lengths(),
-                tape: tape.clone(),
-                sizes,
-                reason,
-            },
-        }
-    }
-
-    /// Evaluates the function; see [`NativeFunction::call`].
-    #[inline]
-    pub(super) fn call<const N: usize>(&self, at: At<'_>, weights: &[f64], out: [&mut [f64]; N]) {
-        match self {
-            Self::Native(native) => native.call_weighted(at, weights, out),
-            Self::Interpreted {
-                tape,
-                sizes,
-                results,
-                ..
-            } => {
-                check_lengths(at, *sizes, &out, results);
-                let computed = interpret_weighted(tape, at, weights);
-                for (out, computed) in out.into_iter().zip(computed) {
-                    out.copy_from_slice(&computed);
-                }
-            }
-        }
+    fn made(&self, tape: &Tape, sizes: Sizes) -> NativeFunction {
+        NativeFunction::compile_for(tape, sizes, Elementary::Standard, self.of)
+            .unwrap_or_else(|_| NativeFunction::interpreted(tape, sizes))
     }
 }
 

@@ -15,7 +15,7 @@ use rustc_hash::FxHashMap;
 
 use super::check::Checked;
 use super::dense::Routines;
-use super::elementary::Elementary;
+use super::elementary::{self, Elementary};
 use crate::symbolic::{Function, Relation};
 use crate::tape::{Argument, Arithmetic, Operation, ResultArray, Tape, Value};
 
@@ -47,7 +47,7 @@ pub(super) fn translate(
 struct Translation<'a> {
     builder: FunctionBuilder<'a>,
     config: TargetFrontendConfig,
-    elementary: Elementary,
+    elementary: elementary::Routines,
     received: Received,
     tape: &'a Tape,
     /// Values computed so far. Arguments and numbers are not among them; see [`Self::value`].
@@ -134,7 +134,7 @@ impl<'a> Translation<'a> {
         Self {
             builder,
             config,
-            elementary,
+            elementary: elementary.routines(),
             received,
             tape: checked.tape,
             values: vec![zero; checked.tape.operations.len()],
@@ -172,12 +172,12 @@ impl<'a> Translation<'a> {
             }
             Operation::Atan2(y, x) => {
                 let arguments = [self.value(*y), self.value(*x)];
-                let routine = self.elementary.atan2() as *const ();
+                let routine = self.elementary.atan2 as *const ();
                 self.call(Shape::Binary, routine, &arguments)[0]
             }
             Operation::Power(base, exponent) => {
                 let arguments = [self.value(*base), self.value(*exponent)];
-                let routine = self.elementary.powf() as *const ();
+                let routine = self.elementary.powf as *const ();
                 self.call(Shape::Binary, routine, &arguments)[0]
             }
             Operation::Choice {
@@ -229,7 +229,7 @@ impl<'a> Translation<'a> {
         let angle = self.value(angle);
         let pointer = self.config.pointer_type();
         let to = self.builder.ins().stack_addr(pointer, self.pair, 0);
-        let routine = self.elementary.sin_cos() as *const ();
+        let routine = self.elementary.sin_cos as *const ();
         self.call(Shape::Pair, routine, &[angle, to]);
         self.parts = self.pair;
     }
@@ -318,7 +318,7 @@ impl<'a> Translation<'a> {
     }
 
     fn function(&mut self, function: Function, a: ir::Value) -> ir::Value {
-        if let Some(routine) = self.elementary.unary(function) {
+        if let Some(routine) = (self.elementary.unary)(function) {
             return self.call(Shape::Unary, routine as *const (), &[a])[0];
         }
         match function {

@@ -229,8 +229,8 @@ impl<'a> Binding<'a> {
         let room = self.room(id).saturating_sub(CALL) / N;
         items.map(|item| {
             let piece = self.signed(item);
-            if piece.width > room && piece.level != Level::Atom {
-                self.define_part(id, piece)
+            if piece.width > room {
+                self.bound(id, piece)
             } else {
                 piece
             }
@@ -263,22 +263,16 @@ impl<'a> Binding<'a> {
             }
         }
         parts.sort_by_key(|(piece, minus)| (*minus, self.place_in_sum(piece.value)));
-        let room = self.room_of_sum(id);
-        let mut sum: Option<Piece> = None;
-        for (part, minus) in parts {
-            sum = Some(match sum {
-                None => part,
-                Some(sum) => {
-                    let operation = if minus {
-                        Arithmetic::Subtract
-                    } else {
-                        Arithmetic::Add
-                    };
-                    let (sum, part) = self.fitting(id, room, operation, sum, part);
-                    sum.binary(&mut self.tape, operation, part)
-                }
-            });
-        }
+        let parts = parts.into_iter().map(|(part, minus)| {
+            let operation = if minus {
+                Arithmetic::Subtract
+            } else {
+                Arithmetic::Add
+            };
+            (operation, part)
+        });
+        // If the sum is bound, it may continue term by term on the next lines.
+        let sum = self.chain(id, self.room_with(id, MORE_LINES), parts);
         (
             sum.unwrap_or_else(|| self.constant(&Rational::ZERO)),
             negative,
@@ -308,67 +302,68 @@ impl<'a> Binding<'a> {
             above[0] = self.constant(&opposite);
             negative = !natural;
         }
-        let numerator = self.chain(id, above);
-        let piece = match (numerator, self.chain(id, below)) {
+        // If the product is bound, it may continue on one more line.
+        let room = self.room_with(id, MORE_LINES / 2);
+        let mut chain = |factors: Vec<Piece>| {
+            let factors = factors
+                .into_iter()
+                .map(|factor| (Arithmetic::Multiply, factor));
+            self.chain(id, room, factors)
+        };
+        let piece = match (chain(above), chain(below)) {
             (Some(numerator), None) => numerator,
             (numerator, Some(denominator)) => {
                 let numerator = numerator.unwrap_or_else(|| self.constant(&Rational::ONE));
                 let room = self.room(id);
-                let (numerator, denominator) =
-                    self.fitting(id, room, Arithmetic::Divide, numerator, denominator);
-                numerator.binary(&mut self.tape, Arithmetic::Divide, denominator)
+                self.joined(id, room, Arithmetic::Divide, [numerator, denominator])
             }
             (None, None) => self.constant(&Rational::ONE),
         };
         (piece, negative)
     }
 
-    /// `a b c …`, with partial products bound beforehand where the line would be too long.
-    fn chain(&mut self, id: Id, factors: Vec<Piece>) -> Option<Piece> {
-        let room = self.room_of_product(id);
-        let mut product: Option<Piece> = None;
-        for factor in factors {
-            product = Some(match product {
-                None => factor,
-                Some(product) => {
-                    let (product, factor) =
-                        self.fitting(id, room, Arithmetic::Multiply, product, factor);
-                    product.binary(&mut self.tape, Arithmetic::Multiply, factor)
-                }
+    /// `a ∘ b ∘ …`, with partial results bound beforehand where the line would be too long.
+    fn chain(
+        &mut self,
+        id: Id,
+        room: usize,
+        parts: impl Iterator<Item = (Arithmetic, Piece)>,
+    ) -> Option<Piece> {
+        let mut whole: Option<Piece> = None;
+        for (operation, part) in parts {
+            whole = Some(match whole {
+                None => part,
+                Some(whole) => self.joined(id, room, operation, [whole, part]),
             });
         }
-        product
+        whole
     }
 
-    /// Two operands unchanged, or the first or both of them bound beforehand where the line would
-    /// be too long.
-    fn fitting(
+    /// `left ∘ right`, the first or both of them bound beforehand where the line would be too long.
+    fn joined(
         &mut self,
         id: Id,
         room: usize,
         operation: Arithmetic,
-        left: Piece,
-        right: Piece,
-    ) -> (Piece, Piece) {
+        [mut left, mut right]: [Piece; 2],
+    ) -> Piece {
         let too_long = |left: &Piece, right: &Piece| left.width_of_binary(operation, right) > room;
-        let mut define = |piece: Piece| {
-            if piece.level == Level::Atom {
-                piece
-            } else {
-                self.define_part(id, piece)
-            }
-        };
-        let left = if too_long(&left, &right) {
-            define(left)
+        if too_long(&left, &right) {
+            left = self.bound(id, left);
+        }
+        if too_long(&left, &right) {
+            right = self.bound(id, right);
+        }
+        left.binary(&mut self.tape, operation, right)
+    }
+
+    /// An operand that is bound unless it is a name or a call.
+    fn bound(&mut self, id: Id, piece: Piece) -> Piece {
+        if piece.level == Level::Atom {
+            piece
         } else {
-            left
-        };
-        let right = if too_long(&left, &right) {
-            define(right)
-        } else {
-            right
-        };
-        (left, right)
+            self.define_by_making(id, piece, None)
+        }
     }
 
     /// Columns available to the expression of a node.
@@ -384,24 +379,14 @@ impl<'a> Binding<'a> {
         COLUMNS.saturating_sub(FRAME + name).max(NARROWEST)
     }
 
-    /// Columns available to a sum: if it is bound, it may continue term by term on the next lines.
-    fn room_of_sum(&self, id: Id) -> usize {
-        let more = if self.outline.bound[id.index()] {
-            MORE_LINES
-        } else {
-            0
-        };
-        self.room(id) + more
-    }
-
-    /// Columns available to a product: if it is bound, it may continue on one more line.
-    fn room_of_product(&self, id: Id) -> usize {
-        let more = if self.outline.bound[id.index()] {
-            MORE_LINES / 2
-        } else {
-            0
-        };
-        self.room(id) + more
+    /// Columns available to a node that may continue on further lines if it is bound.
+    fn room_with(&self, id: Id, more: usize) -> usize {
+        self.room(id)
+            + if self.outline.bound[id.index()] {
+                more
+            } else {
+                0
+            }
     }
 
     fn sine_and_cosine(&mut self, id: Id, angle: Item) {

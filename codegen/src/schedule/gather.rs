@@ -4,15 +4,13 @@
 //! [`super::factor`] opens only single-use products. Here `h l` may be shared: the quotient has to
 //! be available, which is looked up by its value number.
 
-use rustc_hash::FxHashMap;
-
 use super::dag::{Dag, Id, Item, Op};
 use super::factor::without;
-use super::meet::{Value, made_of, over, values, without_sign};
+use super::meet::{Known, Value, made_of, over, values};
 
 /// Factors sums. Returns whether anything changed; every step saves a multiplication.
 pub(super) fn gather(dag: &mut Dag, order: &[Id]) -> bool {
-    let known = Known::of(dag, order);
+    let known = Available::of(dag, order);
     let mut found = Vec::new();
     for &sum in order {
         if let Op::Sum(terms) = dag.op(sum)
@@ -34,7 +32,7 @@ pub(super) fn gather(dag: &mut Dag, order: &[Id]) -> bool {
 /// Distributes products whose expanded terms are all available. Returns whether anything changed;
 /// every step saves a multiplication.
 pub(super) fn scatter(dag: &mut Dag, order: &[Id]) -> bool {
-    let known = Known::of(dag, order);
+    let known = Available::of(dag, order);
     let mut found = Vec::new();
     for &sum in order {
         if let Op::Sum(terms) = dag.op(sum)
@@ -65,27 +63,21 @@ struct Common {
 }
 
 /// The nodes by value number.
-struct Known<'d> {
+struct Available<'d> {
     dag: &'d Dag,
     uses: Vec<u32>,
     values: Vec<Option<Value>>,
-    nodes: FxHashMap<Value, (Id, bool)>,
+    nodes: Known<Id>,
 }
 
-impl<'d> Known<'d> {
+impl<'d> Available<'d> {
     fn of(dag: &'d Dag, order: &[Id]) -> Self {
         let values = values(dag, order);
-        let mut nodes = FxHashMap::default();
-        for &id in order {
-            if let Some((value, sign)) = values[id.index()].map(without_sign) {
-                nodes.entry(value).or_insert((id, sign));
-            }
-        }
         Self {
             dag,
             uses: dag.uses(order),
+            nodes: Known::nodes(order, &values),
             values,
-            nodes,
         }
     }
 
@@ -122,7 +114,7 @@ impl<'d> Known<'d> {
             return None;
         }
         let quotient = over(self.values[term.id.index()]?, self.values[factor.index()]?)?;
-        Some(self.node(quotient)?.flipped_if(term.flip))
+        Some(self.nodes.node(quotient)?.flipped_if(term.flip))
     }
 
     /// The terms with one product distributed.
@@ -150,16 +142,9 @@ impl<'d> Known<'d> {
         let [a, b] = self.values[factor.id.index()]?;
         let product = |term: &Item| {
             let [c, d] = self.values[term.id.index()]?;
-            Some(self.node([a * c, b * d])?.flipped_if(term.flip))
+            Some(self.nodes.node([a * c, b * d])?.flipped_if(term.flip))
         };
         terms.iter().map(product).collect()
-    }
-
-    fn node(&self, value: Value) -> Option<Item> {
-        let (value, sign) = without_sign(value);
-        let &(id, other) = self.nodes.get(&value)?;
-        let flip = sign != other;
-        Some(Item { id, flip })
     }
 }
 

@@ -19,39 +19,28 @@ pub(super) fn lower(program: &Program, function: &Function) -> Dag {
         .iter()
         .flat_map(|array| array.entries.iter().copied())
         .collect();
-    let graph = &*function.graph;
-    let mut lowering = Lowering {
-        graph,
-        arguments: arguments(program, function),
-        pi: program.arguments.pi,
-        kept: kept(graph, function),
-        dag: Dag::default(),
-        known: FxHashMap::default(),
-        systems: FxHashMap::default(),
-    };
-    for expr in graph.in_order(&roots) {
-        let item = lowering.node(expr);
-        lowering.known.insert(expr, item);
-    }
-    let mut dag = lowering.dag;
-    dag.results = roots.iter().map(|root| lowering.known[root]).collect();
-    dag
+    let kept = kept(&function.graph, function);
+    lowered(program, function, &roots, kept)
 }
 
 /// The hint values of the program, whether or not the function computes them.
 pub(super) fn hints(program: &Program, function: &Function) -> Dag {
+    let roots: Vec<Expr> = program.hints.iter().map(|hint| hint.value).collect();
+    lowered(program, function, &roots, FxHashSet::default())
+}
+
+fn lowered(program: &Program, function: &Function, roots: &[Expr], kept: FxHashSet<u32>) -> Dag {
     let graph = &*function.graph;
     let mut lowering = Lowering {
         graph,
         arguments: arguments(program, function),
         pi: program.arguments.pi,
-        kept: FxHashSet::default(),
+        kept,
         dag: Dag::default(),
         known: FxHashMap::default(),
         systems: FxHashMap::default(),
     };
-    let roots: Vec<Expr> = program.hints.iter().map(|hint| hint.value).collect();
-    for expr in graph.in_order(&roots) {
+    for expr in graph.in_order(roots) {
         let item = lowering.node(expr);
         lowering.known.insert(expr, item);
     }

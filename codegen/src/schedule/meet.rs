@@ -15,38 +15,76 @@ use crate::symbolic::field::Element;
 /// A value at both points, up to sign.
 pub(super) type Value = [Element; 2];
 
+/// What is known by value, up to sign.
+pub(super) struct Known<T>(FxHashMap<Value, (T, bool)>);
+
+impl<T: Copy> Known<T> {
+    /// The first of these for each value; each with whether it is of minus its value.
+    fn of(all: impl IntoIterator<Item = (Option<Value>, T, bool)>) -> Self {
+        let mut known = FxHashMap::default();
+        for (value, what, negative) in all {
+            if let Some((value, sign)) = value.map(without_sign) {
+                known.entry(value).or_insert((what, sign != negative));
+            }
+        }
+        Self(known)
+    }
+
+    /// What is known of a value, and whether it is of minus the value.
+    fn get(&self, value: Value) -> Option<(T, bool)> {
+        let (value, sign) = without_sign(value);
+        let &(what, other) = self.0.get(&value)?;
+        Some((what, sign != other))
+    }
+}
+
+impl Known<Id> {
+    /// The first nodes of all values.
+    pub(super) fn nodes<'a>(
+        ids: impl IntoIterator<Item = &'a Id>,
+        values: &[Option<Value>],
+    ) -> Self {
+        Self::of(ids.into_iter().map(|&id| (values[id.index()], id, false)))
+    }
+
+    /// The node of a value.
+    pub(super) fn node(&self, value: Value) -> Option<Item> {
+        let (id, flip) = self.get(value)?;
+        Some(Item { id, flip })
+    }
+}
+
+/// Positions of the nodes in the order.
+fn places(dag: &Dag, order: &[Id]) -> Vec<usize> {
+    let mut places = vec![0; dag.len()];
+    for (position, id) in order.iter().enumerate() {
+        places[id.index()] = position;
+    }
+    places
+}
+
 /// Merges nodes of equal value into the first of them. Returns whether any were merged.
 pub(super) fn meet(dag: &mut Dag, order: &[Id]) -> bool {
     let values = values(dag, order);
-    let mut place = vec![usize::MAX; dag.len()];
-    let mut known: FxHashMap<Value, (Id, bool)> = FxHashMap::default();
+    let (place, known) = (places(dag, order), Known::nodes(order, &values));
     let mut any = false;
-    for (position, &id) in order.iter().enumerate() {
-        place[id.index()] = position;
-        let Some((value, sign)) = values[id.index()].map(without_sign) else {
+    for &id in order {
+        let Some(first) = values[id.index()].and_then(|value| known.node(value)) else {
             continue;
         };
-        let Some(&(first, first_sign)) = known.get(&value) else {
-            known.insert(value, (id, sign));
-            continue;
-        };
-        if !can_give_way(dag, id) {
+        if first.id == id || !can_give_way(dag, id) {
             continue;
         }
         // The shorter form is used if its operands precede the first node.
         let mut before = true;
         dag.for_each_part(id, |part| {
-            before &= place[part.id.index()] < place[first.index()];
+            before &= place[part.id.index()] < place[first.id.index()];
         });
-        if before && sign == first_sign && parts(dag, id) < parts(dag, first) {
+        if before && !first.flip && parts(dag, id) < parts(dag, first.id) {
             let shorter = dag.op(id).clone();
-            dag.replace(first, shorter);
+            dag.replace(first.id, shorter);
         }
-        let alias = Item {
-            id: first,
-            flip: sign != first_sign,
-        };
-        dag.replace(id, Op::Sum(vec![alias]));
+        dag.replace(id, Op::Sum(vec![first]));
         any = true;
     }
     any
@@ -59,14 +97,7 @@ const LONGEST: usize = 12;
 /// whether anything changed.
 pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
     let values = values(dag, order);
-    let mut place = vec![0; dag.len()];
-    let mut known: FxHashMap<Value, (Id, bool)> = FxHashMap::default();
-    for (position, &id) in order.iter().enumerate() {
-        place[id.index()] = position;
-        if let Some((value, sign)) = values[id.index()].map(without_sign) {
-            known.entry(value).or_insert((id, sign));
-        }
-    }
+    let (place, known) = (places(dag, order), Known::nodes(order, &values));
     // A replaced node no longer represents its value.
     let mut gone = vec![false; dag.len()];
     let mut any = false;
@@ -82,17 +113,17 @@ pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
         let items = items.clone();
         let found = pairs(items.len()).find_map(|(i, j)| {
             let whole = whole_of([items[i], items[j]], product, &values)?;
-            let (value, sign) = without_sign(whole);
-            let &(other, other_sign) = known.get(&value)?;
+            let whole = known.node(whole)?;
+            let (other, place) = (whole.id, place[whole.id.index()]);
             let usable = other != id
                 && !gone[other.index()]
-                && (place[other.index()] < position || can_give_way(dag, other));
-            usable.then_some((i, j, other, sign != other_sign))
+                && (place < position || can_give_way(dag, other));
+            usable.then_some((i, j, whole))
         });
-        let Some((i, j, other, flip)) = found else {
+        let Some((i, j, mut together)) = found else {
             continue;
         };
-        let mut together = Item { id: other, flip };
+        let Item { id: other, flip } = together;
         if place[other.index()] > position {
             // The other node comes later: both use a new node.
             let pair = vec![items[i], items[j]];
@@ -128,32 +159,26 @@ pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
 /// available sum `a c + d e`. Returns whether anything changed.
 pub(super) fn meet_in_multiples(dag: &mut Dag, order: &[Id]) -> bool {
     let values = values(dag, order);
-    let mut known: FxHashMap<Value, (Id, bool)> = FxHashMap::default();
     let sums = || order.iter().filter(|&&id| matches!(dag.op(id), Op::Sum(_)));
-    for &id in sums() {
-        if let Some((value, sign)) = values[id.index()].map(without_sign) {
-            known.entry(value).or_insert((id, sign));
-        }
-    }
+    let known = Known::nodes(sums(), &values);
     let mut multiples = Vec::new();
     for &id in sums() {
         let Some(whole) = values[id.index()] else {
             continue;
         };
         let found = factors_inside(dag, id).into_iter().find_map(|factor| {
-            let (value, sign) = without_sign(over(whole, values[factor.index()]?)?);
-            let &(other, other_sign) = known.get(&value)?;
-            (other != id).then_some((factor, other, sign != other_sign))
+            let other = known.node(over(whole, values[factor.index()]?)?)?;
+            (other.id != id).then_some((id, factor, other))
         });
-        multiples.extend(found.map(|(factor, other, flip)| (id, factor, other, flip)));
+        multiples.extend(found);
     }
     let mut any = false;
-    for (id, factor, other, flip) in multiples {
-        if made_of(dag, &[other, factor], id) {
+    for (id, factor, other) in multiples {
+        if made_of(dag, &[other.id, factor], id) {
             continue;
         }
-        let product = dag.product(vec![Item::plain(factor), Item::plain(other)]);
-        dag.replace(id, Op::Sum(vec![product.flipped_if(flip)]));
+        let product = dag.product(vec![Item::plain(factor), Item::plain(other.id)]);
+        dag.replace(id, Op::Sum(vec![product.flipped_if(other.flip)]));
         any = true;
     }
     any
@@ -246,29 +271,21 @@ fn can_give_way(dag: &Dag, id: Id) -> bool {
 
 /// Restores the derivation's names of nodes by value number.
 pub(super) fn name_again(dag: &mut Dag, derived: &Dag) {
-    let mut names: FxHashMap<Value, (Name, bool)> = FxHashMap::default();
     let order = derived.order();
     let known = values(derived, &order);
-    for id in order {
-        if let (Some(name), Some(value)) = (derived.names[id.index()], known[id.index()]) {
-            let (value, sign) = without_sign(value);
-            names.entry(value).or_insert((name, sign));
-        }
-    }
+    let names = order.into_iter().filter_map(|id| {
+        let name = derived.names[id.index()]?;
+        Some((known[id.index()], name, name.negative))
+    });
+    let names = Known::of(names);
     let order = dag.order();
     let values = values(dag, &order);
     for id in order {
-        if dag.names[id.index()].is_some() || !can_give_way(dag, id) {
-            continue;
-        }
-        let Some((value, sign)) = values[id.index()].map(without_sign) else {
-            continue;
-        };
-        if let Some(&(name, other)) = names.get(&value) {
-            dag.names[id.index()] = Some(Name {
-                negative: name.negative != (sign != other),
-                ..name
-            });
+        if dag.names[id.index()].is_none()
+            && can_give_way(dag, id)
+            && let Some((name, negative)) = values[id.index()].and_then(|value| names.get(value))
+        {
+            dag.names[id.index()] = Some(Name { negative, ..name });
         }
     }
 }
@@ -277,22 +294,15 @@ pub(super) fn name_again(dag: &mut Dag, derived: &Dag) {
 /// it is minus the node.
 pub(super) fn known_values(dag: &Dag, hints: &Dag) -> Vec<Option<(usize, bool)>> {
     let hinted = values(hints, &hints.order());
-    let mut known: FxHashMap<Value, (usize, bool)> = FxHashMap::default();
-    for (number, item) in hints.results.iter().enumerate() {
-        if let Some(value) = hinted[item.id.index()].filter(|_| can_give_way(hints, item.id)) {
-            let (value, sign) = without_sign(value);
-            known.entry(value).or_insert((number, sign != item.flip));
-        }
-    }
+    let results = hints.results.iter().enumerate();
+    let known = Known::of(results.filter_map(|(number, item)| {
+        can_give_way(hints, item.id).then(|| (hinted[item.id.index()], number, item.flip))
+    }));
     let order = dag.order();
     let values = values(dag, &order);
     let mut found = vec![None; dag.len()];
     for id in order.into_iter().filter(|&id| can_give_way(dag, id)) {
-        found[id.index()] = values[id.index()].and_then(|value| {
-            let (value, sign) = without_sign(value);
-            let &(number, other) = known.get(&value)?;
-            Some((number, sign != other))
-        });
+        found[id.index()] = values[id.index()].and_then(|value| known.get(value));
     }
     found
 }
@@ -306,7 +316,7 @@ fn parts(dag: &Dag, id: Id) -> usize {
 }
 
 /// The one of `±value` whose first component is in the lower half, and whether the sign changed.
-pub(super) fn without_sign([first, second]: Value) -> (Value, bool) {
+fn without_sign([first, second]: Value) -> (Value, bool) {
     let (first, flip) = first.without_sign();
     ([first, if flip { -second } else { second }], flip)
 }

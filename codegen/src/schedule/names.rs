@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::program::{FunctionKind, Program};
-use crate::symbolic::{Function, Rational};
+use crate::symbolic::Rational;
 use crate::tape::Argument;
 
 /// Longest generated name.
@@ -136,6 +136,15 @@ impl ArgumentNames {
         std::iter::once(&self.time).chain(lists)
     }
 
+    /// A name different from all of them.
+    pub(crate) fn free(&self, wanted: &str) -> String {
+        let mut name = wanted.to_owned();
+        while self.iter().any(|other| *other == name) {
+            name.push('_');
+        }
+        name
+    }
+
     /// Name of a numeric local: `half`, `three_quarters`, `c_17_over_35`. Equal names denote equal
     /// numbers, and no argument has such a name.
     pub(crate) fn constant(&self, value: &Rational) -> String {
@@ -149,28 +158,8 @@ impl ArgumentNames {
 
 /// `two`, `half`, `minus_three_quarters`, `c_17_over_35`.
 fn number_in_words(value: &Rational) -> String {
-    const WHOLE: [&str; 20] = [
-        "zero",
-        "one",
-        "two",
-        "three",
-        "four",
-        "five",
-        "six",
-        "seven",
-        "eight",
-        "nine",
-        "ten",
-        "eleven",
-        "twelve",
-        "thirteen",
-        "fourteen",
-        "fifteen",
-        "sixteen",
-        "seventeen",
-        "eighteen",
-        "nineteen",
-    ];
+    const WHOLE: &str = "zero one two three four five six seven eight nine ten eleven twelve thirteen \
+        fourteen fifteen sixteen seventeen eighteen nineteen";
     const TENS: [&str; 10] = [
         "", "", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety",
     ];
@@ -184,15 +173,12 @@ fn number_in_words(value: &Rational) -> String {
     if let Some((numerator, denominator)) = value.as_small()
         && let (Some(n), Some(d)) = (small(numerator), small(denominator))
     {
-        match (WHOLE.get(n), PART.get(d)) {
-            (Some(whole), _) if d == 1 => return (*whole).to_owned(),
+        let whole = |n: usize| WHOLE.split(' ').nth(n);
+        match (whole(n), PART.get(d)) {
+            (Some(whole), _) if d == 1 => return whole.to_owned(),
             (None, _) if d == 1 && n < 100 => {
-                let (ten, one) = (TENS[n / 10], WHOLE[n % 10]);
-                return if n % 10 == 0 {
-                    ten.to_owned()
-                } else {
-                    format!("{ten}_{one}")
-                };
+                let (ten, one) = (TENS[n / 10], whole(n % 10).filter(|_| n % 10 > 0));
+                return one.map_or_else(|| ten.to_owned(), |one| format!("{ten}_{one}"));
             }
             (Some(_), Some(part)) if d > 1 && n == 1 => return (*part).to_owned(),
             (Some(whole), Some(part)) if d > 2 => return format!("{whole}_{part}s"),
@@ -218,23 +204,4 @@ pub(super) fn joined(parts: &[&str]) -> Option<String> {
 pub(super) fn joined_up_to(longest: usize, parts: &[&str]) -> Option<String> {
     let name = parts.join("_");
     (name.len() <= longest && !name.contains("_part_")).then_some(name)
-}
-
-/// Method name of a function.
-pub(crate) fn method(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Asin => "asin",
-        Function::Acos => "acos",
-        Function::Atan => "atan",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
-        Function::Exp => "exp",
-        Function::Ln => "ln",
-        Function::Sqrt => "sqrt",
-        Function::Abs => "abs",
-        Function::Sign => "sign",
-    }
 }

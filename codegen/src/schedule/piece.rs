@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::monomial::Monomial;
-use super::names::{ArgumentNames, joined, method};
+use super::names::{ArgumentNames, joined};
 use crate::symbolic::{Function, Relation};
 use crate::tape::{Arithmetic, Operation, Tape, Value};
 
@@ -25,13 +25,17 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// A value that prints as a name.
-    pub(super) fn name(value: Value, name: &str) -> Self {
+    fn new(value: Value, width: usize, level: Level) -> Self {
         Self {
             value,
-            width: name.len(),
-            level: Level::Atom,
+            width,
+            level,
         }
+    }
+
+    /// A value that prints as a name.
+    pub(super) fn name(value: Value, name: &str) -> Self {
+        Self::new(value, name.len(), Level::Atom)
     }
 
     /// Width including the parentheses required at precedence `level`.
@@ -47,20 +51,15 @@ impl Piece {
 
     /// `self ∘ right`
     pub(super) fn binary(self, tape: &mut Tape, operation: Arithmetic, right: Self) -> Self {
-        Self {
-            width: self.width_of_binary(operation, &right),
-            value: tape.binary(operation, self.value, right.value),
-            level: levels(operation).0,
-        }
+        let width = self.width_of_binary(operation, &right);
+        let value = tape.binary(operation, self.value, right.value);
+        Self::new(value, width, levels(operation).0)
     }
 
     /// `-self`
     pub(super) fn negated(self, tape: &mut Tape) -> Self {
-        Self {
-            width: 1 + self.width_at(Level::Atom),
-            value: tape.push(Operation::Negate(self.value)),
-            level: Level::Sign,
-        }
+        let value = tape.push(Operation::Negate(self.value));
+        Self::new(value, 1 + self.width_at(Level::Atom), Level::Sign)
     }
 
     /// Whether the text starts with a negative number.
@@ -85,45 +84,25 @@ impl Piece {
                 value: tape.constant(-&value),
                 ..self
             },
-            Some(Operation::Negate(value)) => Self {
-                value,
-                level: Level::Atom,
-                width,
-            },
+            Some(Operation::Negate(value)) => Self::new(value, width, Level::Atom),
             Some(Operation::Binary(Arithmetic::Subtract, value, b)) => {
-                let first = Self {
-                    value,
-                    width,
-                    level: Level::Product,
-                };
+                let first = Self::new(value, width, Level::Product);
                 let value = if first.starts_negative(tape) {
                     let first = first.opposite(tape).value;
                     tape.binary(Arithmetic::Add, b, first)
                 } else {
                     tape.binary(Arithmetic::Subtract, b, first.value)
                 };
-                Self {
-                    value,
-                    width,
-                    level: Level::Sum,
-                }
+                Self::new(value, width, Level::Sum)
             }
             Some(Operation::Binary(
                 operation @ (Arithmetic::Multiply | Arithmetic::Divide),
                 value,
                 b,
             )) => {
-                let first = Self {
-                    value,
-                    width,
-                    level: Level::Atom,
-                };
-                let first = first.opposite(tape).value;
-                Self {
-                    value: tape.binary(operation, first, b),
-                    width: width + 1,
-                    level: Level::Product,
-                }
+                let first = Self::new(value, width, Level::Atom).opposite(tape).value;
+                let value = tape.binary(operation, first, b);
+                Self::new(value, width + 1, Level::Product)
             }
             _ => self.negated(tape),
         }
@@ -131,44 +110,36 @@ impl Piece {
 
     /// `self.function()`
     pub(super) fn function(self, tape: &mut Tape, function: Function) -> Self {
-        Self {
-            width: self.width_at(Level::Atom) + method(function).len() + 3,
-            value: tape.push(Operation::Function(function, self.value)),
-            level: Level::Atom,
-        }
+        let width = self.width_at(Level::Atom) + function.name().len() + 3;
+        let value = tape.push(Operation::Function(function, self.value));
+        Self::new(value, width, Level::Atom)
     }
 
     /// `self.atan2(x)`
     pub(super) fn atan2(self, tape: &mut Tape, x: Self) -> Self {
-        Self {
-            width: self.width_at(Level::Atom) + x.width + ".atan2()".len(),
-            value: tape.push(Operation::Atan2(self.value, x.value)),
-            level: Level::Atom,
-        }
+        let width = self.width_at(Level::Atom) + x.width + ".atan2()".len();
+        let value = tape.push(Operation::Atan2(self.value, x.value));
+        Self::new(value, width, Level::Atom)
     }
 
     /// `self.powf(exponent)`
     pub(super) fn power(self, tape: &mut Tape, exponent: Self) -> Self {
-        Self {
-            width: self.width_at(Level::Atom) + exponent.width + ".powf()".len(),
-            value: tape.push(Operation::Power(self.value, exponent.value)),
-            level: Level::Atom,
-        }
+        let width = self.width_at(Level::Atom) + exponent.width + ".powf()".len();
+        let value = tape.push(Operation::Power(self.value, exponent.value));
+        Self::new(value, width, Level::Atom)
     }
 
     /// Compared left and right sides, value if the relation holds, value otherwise.
     pub(super) fn choice(tape: &mut Tape, relation: Relation, operands: [Self; 4]) -> Self {
         let width: usize = operands.iter().map(|operand| operand.width).sum();
         let [left, right, then, otherwise] = operands.map(|operand| operand.value);
-        Self {
-            value: tape.push(Operation::Choice {
-                relation,
-                compared: [left, right],
-                branches: [then, otherwise],
-            }),
-            width: width + "T::if_less_or_equal(, , , )".len(),
-            level: Level::Atom,
-        }
+        let value = tape.push(Operation::Choice {
+            relation,
+            compared: [left, right],
+            branches: [then, otherwise],
+        });
+        let width = width + "T::if_less_or_equal(, , , )".len();
+        Self::new(value, width, Level::Atom)
     }
 }
 
@@ -197,7 +168,7 @@ pub(super) fn describe(
     let inner = |value: &Value| describe(*value, tape, products, arguments);
     match tape.unnamed(value)? {
         Operation::Negate(a) => joined(&["minus", &inner(a)?]),
-        Operation::Function(function, a) => joined(&[method(*function), &inner(a)?]),
+        Operation::Function(function, a) => joined(&[function.name(), &inner(a)?]),
         Operation::Binary(operation, a, b) => {
             let (left, right) = (inner(a)?, inner(b)?);
             match operation {

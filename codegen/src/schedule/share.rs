@@ -21,6 +21,16 @@ pub(super) enum Within {
     Products,
 }
 
+impl Within {
+    /// The operands of a node that is searched.
+    fn items(self, dag: &Dag, id: Id) -> Option<&Vec<Item>> {
+        match (self, dag.op(id)) {
+            (Self::Sums, Op::Sum(items)) | (Self::Products, Op::Product(items)) => Some(items),
+            _ => None,
+        }
+    }
+}
+
 /// Longer sums and products are skipped: the number of pairs is quadratic in the length.
 const LONGEST: usize = 64;
 
@@ -45,13 +55,9 @@ pub(super) fn share(
         queue: BinaryHeap::new(),
     };
     for &id in order {
-        match (within, dag.op(id)) {
-            (Within::Sums, Op::Sum(items)) | (Within::Products, Op::Product(items))
-                if (2..=LONGEST).contains(&items.len()) =>
-            {
-                sharing.add_list(id, items);
-            }
-            _ => {}
+        let items = within.items(dag, id);
+        if let Some(items) = items.filter(|items| (2..=LONGEST).contains(&items.len())) {
+            sharing.add_list(id, items);
         }
     }
     sharing.count_all();
@@ -60,11 +66,12 @@ pub(super) fn share(
         any = true;
     }
     for (id, items) in sharing.owners.into_iter().zip(sharing.lists) {
-        match (within, dag.op(id)) {
-            (Within::Sums, Op::Sum(old)) | (Within::Products, Op::Product(old))
-                if *old == items => {}
-            (Within::Sums, _) => dag.replace(id, Op::Sum(items)),
-            (Within::Products, _) => dag.replace(id, Op::Product(items)),
+        if within.items(dag, id) != Some(&items) {
+            let op = match within {
+                Within::Sums => Op::Sum(items),
+                Within::Products => Op::Product(items),
+            };
+            dag.replace(id, op);
         }
     }
     any

@@ -110,14 +110,7 @@ impl Derivatives {
                 // A x = b gives A x' = b' - A' x.
                 let system_now = graph.system(system).clone();
                 let size = system_now.right.len();
-                let unknowns: Vec<Expr> = (0..size)
-                    .map(|r| {
-                        graph.intern(Node::Solution {
-                            system,
-                            row: u32::try_from(r).unwrap_or(0),
-                        })
-                    })
-                    .collect();
+                let unknowns = graph.unknowns(system);
                 let right = (0..size)
                     .map(|i| {
                         let mut parts = vec![self.get(system_now.right[i])];
@@ -136,11 +129,7 @@ impl Derivatives {
 
     /// Names the derivative of a named quantity if it is worth a name.
     fn name_derivative(&self, graph: &mut Graph, id: u32, derivative: Expr) -> Expr {
-        let worth_a_name = match graph.node(derivative) {
-            Node::Sum(terms) => terms.len() > 1,
-            _ => false,
-        };
-        if !worth_a_name {
+        if !matches!(graph.node(derivative), Node::Sum(terms) if terms.len() > 1) {
             return derivative;
         }
         let name = format!(

@@ -2,7 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{Expr, Function, Graph, Node, Relation};
+use super::{Expr, Function, Graph, Node, Relation, applied};
+use appell_runtime::real::Real as _;
 
 /// Values of `roots` where the symbol with id `i` has the value `values[i]`. A symbol without a value is NaN.
 pub fn evaluate(g: &Graph, values: &[f64], roots: &[Expr]) -> Vec<f64> {
@@ -91,20 +92,8 @@ impl<'g> Evaluation<'g> {
 
 fn apply(function: Function, x: f64) -> f64 {
     match function {
-        Function::Sin => x.sin(),
-        Function::Cos => x.cos(),
-        Function::Asin => x.asin(),
-        Function::Acos => x.acos(),
-        Function::Atan => x.atan(),
-        Function::Sinh => x.sinh(),
-        Function::Cosh => x.cosh(),
-        Function::Tanh => x.tanh(),
-        Function::Exp => x.exp(),
-        Function::Ln => x.ln(),
-        Function::Sqrt => x.sqrt(),
-        Function::Abs => x.abs(),
         Function::Sign if x == 0.0 => 0.0,
-        Function::Sign => x.signum(),
+        other => applied!(other, x),
     }
 }
 

@@ -98,16 +98,8 @@ impl Element {
     }
 
     /// Power by repeated squaring.
-    pub(super) fn pow(self, mut exponent: u64) -> Self {
-        let (mut base, mut power) = (self, Self::ONE);
-        while exponent != 0 {
-            if exponent & 1 == 1 {
-                power = power * base;
-            }
-            base = base * base;
-            exponent >>= 1;
-        }
-        power
+    pub(super) fn pow(self, exponent: u64) -> Self {
+        repeated(self, Self::ONE, exponent, |a, b| a * b)
     }
 
     /// `1/self`; zero has none.
@@ -232,17 +224,22 @@ impl Rotation {
     }
 
     /// A multiple of the angle.
-    pub(super) fn times(self, mut multiple: u64) -> Self {
-        let (mut base, mut turn) = (self, Self::NONE);
-        while multiple != 0 {
-            if multiple & 1 == 1 {
-                turn = turn.then(base);
-            }
-            base = base.then(base);
-            multiple >>= 1;
-        }
-        turn
+    pub(super) fn times(self, multiple: u64) -> Self {
+        repeated(self, Self::NONE, multiple, Self::then)
     }
+}
+
+/// An operation applied to this many copies of an element, by repeated doubling.
+fn repeated<T: Copy>(element: T, neutral: T, mut times: u64, of: impl Fn(T, T) -> T) -> T {
+    let (mut base, mut whole) = (element, neutral);
+    while times != 0 {
+        if times & 1 == 1 {
+            whole = of(whole, base);
+        }
+        base = of(base, base);
+        times >>= 1;
+    }
+    whole
 }
 
 /// A pseudo-random element, a function of its arguments.
@@ -324,28 +321,12 @@ mod tests {
         let multiple = |n| Rotation::PI_OVER_24.times(n);
         let root = |n| Element::new(n).square_root().unwrap();
         let twice = |x: Element| x + x;
-        assert_eq!(
-            multiple(24),
-            Rotation {
-                cos: -Element::ONE,
-                sin: Element::ZERO
-            }
-        );
-        assert_eq!(
-            multiple(12),
-            Rotation {
-                cos: Element::ZERO,
-                sin: Element::ONE
-            }
-        );
-        assert_eq!(
-            (twice(multiple(8).cos), twice(multiple(8).sin)),
-            (Element::ONE, root(3))
-        );
-        assert_eq!(
-            (twice(multiple(6).cos), twice(multiple(6).sin)),
-            (root(2), root(2))
-        );
+        let point = |n| (multiple(n).cos, multiple(n).sin);
+        let doubled = |n| (twice(multiple(n).cos), twice(multiple(n).sin));
+        assert_eq!(point(24), (-Element::ONE, Element::ZERO));
+        assert_eq!(point(12), (Element::ZERO, Element::ONE));
+        assert_eq!(doubled(8), (Element::ONE, root(3)));
+        assert_eq!(doubled(6), (root(2), root(2)));
         assert_eq!(root(2) * root(3), root(6));
         for prime in [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31] {
             assert!(Element::new(prime).square_root().is_some());

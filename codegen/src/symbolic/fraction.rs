@@ -160,14 +160,17 @@ impl Graph {
         for term in self.terms(sum) {
             let mut factors = Vec::new();
             for factor in self.factors_of(term.expr) {
-                let Node::Function(function, angle) = *self.node(factor.base) else {
-                    factors.push(self.pow(factor.base, factor.exponent));
-                    continue;
+                let angle = match *self.node(factor.base) {
+                    Node::Function(function, angle)
+                        if function == other && factor.exponent >= 2 =>
+                    {
+                        angle
+                    }
+                    _ => {
+                        factors.push(self.pow(factor.base, factor.exponent));
+                        continue;
+                    }
                 };
-                if function != other || factor.exponent < 2 {
-                    factors.push(self.pow(factor.base, factor.exponent));
-                    continue;
-                }
                 exchanged = true;
                 let function = self.function(kept, angle);
                 let square = self.square(function);

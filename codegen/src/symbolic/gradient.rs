@@ -161,12 +161,11 @@ impl Sweep {
         }
         let transposed = (0..size * size).map(|k| parts.matrix[k % size * size + k / size]);
         let by_right = graph.solve_numerically(transposed.collect(), right);
+        let unknowns = graph.unknowns(system);
         for i in 0..size {
             self.add(parts.right[i], by_right[i]);
             for j in 0..size {
-                let row = u32::try_from(j).unwrap_or(0);
-                let unknown = graph.intern(Node::Solution { system, row });
-                let product = graph.mul(by_right[i], unknown);
+                let product = graph.mul(by_right[i], unknowns[j]);
                 let share = graph.neg(product);
                 self.add(parts.matrix[i * size + j], share);
             }

@@ -228,6 +228,13 @@ impl Graph {
         &self.systems[index as usize]
     }
 
+    /// All unknowns of a system.
+    pub(super) fn unknowns(&mut self, system: u32) -> Vec<Expr> {
+        let rows = (0..).take(self.system(system).right.len());
+        rows.map(|row| self.intern(Node::Solution { system, row }))
+            .collect()
+    }
+
     /// Calls `visit` with every direct operand of `expr`. Definitions of names and the entries of the systems
     /// of solutions count as operands.
     pub fn for_each_part(&self, expr: Expr, mut visit: impl FnMut(Expr)) {

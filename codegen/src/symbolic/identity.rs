@@ -135,15 +135,26 @@ impl IdentityTest {
         }
         self.cones.extend(g);
         let roots = self.cones.union(self.cones.roots(a), self.cones.roots(b));
+        let both = |test: &mut Self, index| test.value(g, index, a).zip(test.value(g, index, b));
+        self.agree_at(most_points(roots), TRIALS, both) && self.roots_are_independent(g, roots)
+    }
+
+    /// Whether the values of two expressions are equal at the first `enough` of `most` points where they are defined.
+    fn agree_at(
+        &mut self,
+        most: usize,
+        enough: usize,
+        mut both: impl FnMut(&mut Self, usize) -> Option<(Element, Element)>,
+    ) -> bool {
         let mut agreed = 0;
-        for index in 0..most_points(roots) {
-            if let (Some(a), Some(b)) = (self.value(g, index, a), self.value(g, index, b)) {
+        for index in 0..most {
+            if let Some((a, b)) = both(self, index) {
                 if a != b {
                     return false;
                 }
                 agreed += 1;
-                if agreed == TRIALS {
-                    return self.roots_are_independent(g, roots);
+                if agreed == enough {
+                    return true;
                 }
             }
         }
@@ -162,18 +173,15 @@ impl IdentityTest {
             self.remembered = 0;
         }
         let roots = self.cones.roots(e);
-        let mut agreed = 0;
-        for index in 0..most_points(roots) {
-            let Some(before) = self.value(g, index, e) else {
-                continue;
-            };
+        let both = |test: &mut Self, index| {
+            let before = test.value(g, index, e)?;
             let Self {
                 points,
                 redrawn,
                 remembered,
                 cones,
                 ..
-            } = &mut *self;
+            } = test;
             let original = &points[index];
             let redraw = Redraw {
                 original,
@@ -186,62 +194,9 @@ impl IdentityTest {
             let known = other.len();
             let after = other.evaluate(g, e, Some(redraw));
             *remembered += other.len() - known;
-            if let Some(after) = after {
-                if before != after {
-                    return false;
-                }
-                agreed += 1;
-                if agreed == TRIALS {
-                    return self.roots_are_independent(g, roots);
-                }
-            }
-        }
-        false
-    }
-
-    /// A number that is equal for equal expressions and different for different ones. `None` where the test
-    /// is inconclusive.
-    ///
-    /// Expressions with square roots have equal fingerprints only if the same radicands occur in them.
-    pub fn fingerprint(&mut self, g: &Graph, e: Expr) -> Option<u128> {
-        self.cones.extend(g);
-        let roots = self.cones.roots(e);
-        let mut values = [Element::ZERO; TRIALS];
-        let mut places = [0; TRIALS];
-        let mut found = 0;
-        for index in 0..most_points(roots) {
-            if let Some(value) = self.value(g, index, e) {
-                values[found] = value;
-                places[found] = index;
-                found += 1;
-                if found == TRIALS {
-                    break;
-                }
-            }
-        }
-        if found < TRIALS {
-            return None;
-        }
-        let mut halves = values.map(Element::get);
-        if roots != Cones::NO_ROOTS {
-            if !self.roots_are_independent(g, roots) {
-                return None;
-            }
-            for (half, place) in halves.iter_mut().zip(places) {
-                let radicands = self.cones.radicands(roots).to_vec();
-                let mut radicands: Vec<Option<Element>> = radicands
-                    .into_iter()
-                    .map(|r| self.value(g, place, r))
-                    .collect();
-                radicands.sort_unstable();
-                radicands.dedup();
-                for radicand in radicands {
-                    let radicand = radicand.map_or(u64::MAX, Element::get);
-                    *half = keyed(self.seed, place as u64, [*half, radicand]).get();
-                }
-            }
-        }
-        Some(u128::from(halves[0]) << 64 | u128::from(halves[1]))
+            Some((before, after?))
+        };
+        self.agree_at(most_points(roots), TRIALS, both) && self.roots_are_independent(g, roots)
     }
 
     /// Bound on the probability that [`IdentityTest::is_zero`] takes a nonzero `e` for zero, over the choice
@@ -321,20 +276,9 @@ impl IdentityTest {
 
     /// Whether two expressions agree wherever both are defined, taking the square roots drawn.
     fn agree(&mut self, g: &Graph, a: Expr, b: Expr) -> bool {
-        let mut agreed = 0;
-        for index in 0..MOST_POINTS_WITH_ROOTS {
-            if let (Some(a), Some(b)) = (self.value(g, index, a), self.value(g, index, b)) {
-                if a != b {
-                    return false;
-                }
-                agreed += 1;
-                // The expressions agree at enough points; the extra ones guard against the sign of a root.
-                if agreed == 8 * TRIALS {
-                    return true;
-                }
-            }
-        }
-        false
+        let both = |test: &mut Self, index| test.value(g, index, a).zip(test.value(g, index, b));
+        // More points guard against the sign of a root.
+        self.agree_at(MOST_POINTS_WITH_ROOTS, 8 * TRIALS, both)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Interval bounds of expressions over declared ranges of symbols, in the arithmetic of
 //! [`appell_runtime::interval`].
 
-use super::{Expr, Function, Graph, Node, Relation, SymbolId};
+use super::{Expr, Function, Graph, Node, Relation, SymbolId, applied};
 pub use appell_runtime::interval::Interval;
 use appell_runtime::interval::Range;
 
@@ -99,7 +99,7 @@ impl Intervals {
             Node::Product(factors) => factors.iter().fold(Range::number(1.0, false), |p, f| {
                 p.times(self.at(f.base).power(f.exponent))
             }),
-            Node::Function(function, x) => apply(*function, self.at(*x)),
+            Node::Function(function, x) => applied!(function, self.at(*x)),
             Node::Atan2(..) => Range::ANGLE,
             Node::Power(base, exponent) => self.at(*base).real_power(self.at(*exponent)),
             Node::Choice {
@@ -121,23 +121,5 @@ impl Intervals {
             }
             Node::Solution { .. } => Range::ANY,
         }
-    }
-}
-
-fn apply(function: Function, x: Range) -> Range {
-    match function {
-        Function::Sin => x.sin(),
-        Function::Cos => x.cos(),
-        Function::Asin => x.asin(),
-        Function::Acos => x.acos(),
-        Function::Atan => x.atan(),
-        Function::Sinh => x.sinh(),
-        Function::Cosh => x.cosh(),
-        Function::Tanh => x.tanh(),
-        Function::Exp => x.exp(),
-        Function::Ln => x.ln(),
-        Function::Sqrt => x.sqrt(),
-        Function::Abs => x.abs(),
-        Function::Sign => x.sign(),
     }
 }

@@ -88,6 +88,50 @@ pub enum Function {
     Sign,
 }
 
+impl Function {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sin => "sin",
+            Self::Cos => "cos",
+            Self::Asin => "asin",
+            Self::Acos => "acos",
+            Self::Atan => "atan",
+            Self::Sinh => "sinh",
+            Self::Cosh => "cosh",
+            Self::Tanh => "tanh",
+            Self::Exp => "exp",
+            Self::Ln => "ln",
+            Self::Sqrt => "sqrt",
+            Self::Abs => "abs",
+            Self::Sign => "sign",
+        }
+    }
+}
+
+/// The method of a number that has the name of a function, at `$x`.
+macro_rules! applied {
+    ($function:expr, $x:expr) => {
+        match $function {
+            Function::Sin => $x.sin(),
+            Function::Cos => $x.cos(),
+            Function::Asin => $x.asin(),
+            Function::Acos => $x.acos(),
+            Function::Atan => $x.atan(),
+            Function::Sinh => $x.sinh(),
+            Function::Cosh => $x.cosh(),
+            Function::Tanh => $x.tanh(),
+            Function::Exp => $x.exp(),
+            Function::Ln => $x.ln(),
+            Function::Sqrt => $x.sqrt(),
+            Function::Abs => $x.abs(),
+            Function::Sign => $x.sign(),
+        }
+    };
+}
+
+pub(crate) use applied;
+
 /// Comparisons of a choice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "cache", derive(serde::Serialize, serde::Deserialize))]

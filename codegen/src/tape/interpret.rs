@@ -5,7 +5,7 @@ use appell_runtime::model::{Along, At};
 use appell_runtime::real::{Enclosure, Real};
 
 use super::{Argument, Arithmetic, Operation, Tape, Value};
-use crate::symbolic::{Function, Relation};
+use crate::symbolic::{Function, Relation, applied};
 
 /// The results of a tape at time `t`, state `x`, inputs `u` and parameters `p`, one list per result array.
 ///
@@ -27,6 +27,17 @@ pub fn interpret_weighted(tape: &Tape, at: At<'_>, weights: &[f64]) -> Vec<Vec<f
         lu_solve_in_place(matrix, unknowns, unknowns.len());
     };
     results(tape, t, [x, u, p, weights], solve)
+}
+
+/// [`interpret_weighted`] into slices, one for each result.
+///
+/// # Panics
+///
+/// As [`interpret_weighted`], and if a slice has another length than its result.
+pub fn interpret_into(tape: &Tape, at: At<'_>, weights: &[f64], out: &mut [&mut [f64]]) {
+    for (out, result) in out.iter_mut().zip(interpret_weighted(tape, at, weights)) {
+        out.copy_from_slice(&result);
+    }
 }
 
 /// Bounds on the results over an interval of time, for functions of time and parameters, one array after the other.
@@ -84,7 +95,7 @@ fn results<T: Real>(
                 Arithmetic::Multiply => at(*a) * at(*b),
                 Arithmetic::Divide => at(*a) / at(*b),
             },
-            Operation::Function(function, a) => apply(*function, at(*a)),
+            Operation::Function(function, a) => applied!(function, at(*a)),
             Operation::Atan2(y, x) => Real::atan2(at(*y), at(*x)),
             Operation::Power(base, exponent) => Real::powf(at(*base), at(*exponent)),
             Operation::Choice {
@@ -124,22 +135,4 @@ fn results<T: Real>(
         .iter()
         .map(|array| entries(&array.entries))
         .collect()
-}
-
-fn apply<T: Real>(function: Function, x: T) -> T {
-    match function {
-        Function::Sin => Real::sin(x),
-        Function::Cos => Real::cos(x),
-        Function::Asin => Real::asin(x),
-        Function::Acos => Real::acos(x),
-        Function::Atan => Real::atan(x),
-        Function::Sinh => Real::sinh(x),
-        Function::Cosh => Real::cosh(x),
-        Function::Tanh => Real::tanh(x),
-        Function::Exp => Real::exp(x),
-        Function::Ln => Real::ln(x),
-        Function::Sqrt => Real::sqrt(x),
-        Function::Abs => Real::abs(x),
-        Function::Sign => Real::sign(x),
-    }
 }

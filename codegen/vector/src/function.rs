@@ -4,7 +4,7 @@
 #![allow(unsafe_code)]
 
 use appell_codegen::jit::{JitError, NativeFunction, Sizes, check};
-use appell_codegen::tape::{Tape, interpret_weighted};
+use appell_codegen::tape::Tape;
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
 
@@ -30,7 +30,6 @@ pub struct VectorFunction {
 enum How {
     Vector(Machine),
     PlaceByPlace(NativeFunction),
-    Interpreted(Tape),
 }
 
 impl VectorFunction {
@@ -73,7 +72,7 @@ impl VectorFunction {
             VectorError::Tape(
                 JitError::TooManyOperations { .. } | JitError::TooManyRows { .. },
             ) => Ok(Self {
-                how: How::Interpreted(tape.clone()),
+                how: How::PlaceByPlace(NativeFunction::interpreted(tape, sizes)),
                 sizes,
                 weights: 0,
                 results: tape.lengths(),
@@ -114,19 +113,7 @@ impl VectorFunction {
         match &self.how {
             // SAFETY: the lengths were compared.
             How::Vector(machine) => unsafe { machine.call(at, weights, results) },
-            How::PlaceByPlace(native) => {
-                place_by_place(at, weights, results, |at, weights, results| {
-                    native.call_weighted(at, weights, results);
-                });
-            }
-            How::Interpreted(tape) => {
-                place_by_place(at, weights, results, |at, weights, results| {
-                    let found = interpret_weighted(tape, at, weights);
-                    for (result, found) in results.into_iter().zip(found) {
-                        result.copy_from_slice(&found);
-                    }
-                });
-            }
+            How::PlaceByPlace(native) => place_by_place(native, at, weights, results),
         }
     }
 
@@ -154,12 +141,12 @@ impl VectorFunction {
     }
 }
 
-/// Calls a function for every place of a block: with the place, its weights, and slices for its results.
+/// Calls a function for every place of a block.
 fn place_by_place<const N: usize>(
+    native: &NativeFunction,
     at: AtLanes<'_>,
     weights: &[[f64; LANES]],
     mut results: [&mut [[f64; LANES]]; N],
-    call: impl Fn(At<'_>, &[f64], [&mut [f64]; N]),
 ) {
     let of_lane = |numbers: &[[f64; LANES]], lane: usize| -> Vec<f64> {
         numbers.iter().map(|number| number[lane]).collect()
@@ -173,7 +160,7 @@ fn place_by_place<const N: usize>(
             u: &u,
             p: &p,
         };
-        call(place, &weights, found.each_mut().map(Vec::as_mut_slice));
+        native.call_weighted(place, &weights, found.each_mut().map(Vec::as_mut_slice));
         for (result, found) in results.iter_mut().zip(&found) {
             for (number, found) in result.iter_mut().zip(found) {
                 number[lane] = *found;

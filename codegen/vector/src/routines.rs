@@ -39,46 +39,43 @@ fn of<B: Blocks, const N: usize>(operation: &Operation) -> Option<Routine<N>> {
     })
 }
 
-fn unary<B: Blocks, const N: usize>(function: Function) -> Option<Routine<N>> {
-    Some(match function {
-        Function::Sin => sin::<B, N>,
-        Function::Cos => cos::<B, N>,
-        Function::Asin => asin::<B, N>,
-        Function::Acos => acos::<B, N>,
-        Function::Atan => atan::<B, N>,
-        Function::Sinh => sinh::<B, N>,
-        Function::Cosh => cosh::<B, N>,
-        Function::Tanh => tanh::<B, N>,
-        Function::Exp => exp::<B, N>,
-        Function::Ln => ln::<B, N>,
-        Function::Sqrt | Function::Abs | Function::Sign => return None,
-    })
-}
-
-macro_rules! routines {
-    ($first:ident, $second:ident: $($name:ident($($given:ident),+)),+) => {
-        $(
-            /// # Safety
-            ///
-            /// The addresses of operands are those of blocks, `to` that of one that nothing else uses.
-            unsafe extern "C" fn $name<B: Blocks, const N: usize>(
-                $first: *const [f64; N],
-                $second: *const [f64; N],
-                to: *mut [f64; N],
-                _: usize,
-            ) {
-                let _ = $second;
-                // SAFETY: the caller's promise.
-                unsafe { <B as Blocks>::$name($(&*$given,)+ &mut *to) }
-            }
-        )+
+macro_rules! routine {
+    ($name:ident($first:ident, $second:ident): $($given:ident),+) => {
+        /// # Safety
+        ///
+        /// The addresses of operands are those of blocks, `to` that of one that nothing else uses.
+        unsafe extern "C" fn $name<B: Blocks, const N: usize>(
+            $first: *const [f64; N],
+            $second: *const [f64; N],
+            to: *mut [f64; N],
+            _: usize,
+        ) {
+            let _ = $second;
+            // SAFETY: the caller's promise.
+            unsafe { <B as Blocks>::$name($(&*$given,)+ &mut *to) }
+        }
     };
 }
 
-routines!(
-    first, second: sin(first), cos(first), asin(first), acos(first), atan(first), sinh(first),
-    cosh(first), tanh(first), exp(first), ln(first), atan2(first, second), powf(first, second)
+macro_rules! unary {
+    ($($function:ident $name:ident),+) => {
+        $(routine!($name(first, second): first);)+
+
+        fn unary<B: Blocks, const N: usize>(function: Function) -> Option<Routine<N>> {
+            Some(match function {
+                $(Function::$function => $name::<B, N>,)+
+                Function::Sqrt | Function::Abs | Function::Sign => return None,
+            })
+        }
+    };
+}
+
+unary!(
+    Sin sin, Cos cos, Asin asin, Acos acos, Atan atan, Sinh sinh, Cosh cosh, Tanh tanh, Exp exp,
+    Ln ln
 );
+routine!(atan2(first, second): first, second);
+routine!(powf(first, second): first, second);
 
 /// # Safety
 ///

@@ -98,11 +98,6 @@ impl Binding<'_> {
         format!("{consumer}_{word}_{count}")
     }
 
-    /// Binds an operand that is too wide for a line.
-    pub(super) fn define_part(&mut self, id: Id, piece: Piece) -> Piece {
-        self.define_by_making(id, piece, None)
-    }
-
     /// Binds a value to a name made from its operation.
     pub(super) fn define_by_making(&mut self, id: Id, piece: Piece, hint: Option<String>) -> Piece {
         let described = describe(piece.value, &self.tape, &self.products, &self.arguments);

@@ -314,9 +314,9 @@ impl Point {
         match function {
             Function::Sin => self.rotation(g, x, redraw).map(|r| r.sin),
             Function::Cos => self.rotation(g, x, redraw).map(|r| r.cos),
-            Function::Exp => self.exponential(g, x, redraw),
+            Function::Exp => self.growth(g, x, 0, redraw),
             Function::Sinh | Function::Cosh | Function::Tanh => {
-                let up = self.exponential(g, x, redraw)?;
+                let up = self.growth(g, x, 0, redraw)?;
                 let down = up.inverse()?;
                 match function {
                     Function::Sinh => Some((up - down) * Element::HALF),
@@ -433,17 +433,7 @@ impl Point {
         })
     }
 
-    /// `exp` of a sum as a product over its atoms.
-    fn exponential(
-        &mut self,
-        g: &Graph,
-        exponent: Expr,
-        redraw: Option<Redraw<'_>>,
-    ) -> Option<Element> {
-        self.growth(g, exponent, 0, redraw)
-    }
-
-    /// `Π growth(base, atom)^coefficient` over the atoms of the exponent.
+    /// `Π growth(base, atom)^coefficient` over the atoms of the exponent; `exp` has the base 0.
     fn growth(
         &mut self,
         g: &Graph,

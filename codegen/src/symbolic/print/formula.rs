@@ -429,18 +429,10 @@ pub fn visible(graph: &Graph, root: Expr) -> Vec<Expr> {
 
 fn function_name(function: Function) -> &'static str {
     match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
         Function::Asin => "arcsin",
         Function::Acos => "arccos",
         Function::Atan => "arctan",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
-        Function::Exp => "exp",
-        Function::Ln => "ln",
-        Function::Sqrt => "sqrt",
-        Function::Abs => "abs",
         Function::Sign => "sgn",
+        other => other.name(),
     }
 }

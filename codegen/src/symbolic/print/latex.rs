@@ -48,13 +48,10 @@ fn label(part: &str) -> String {
         return part.to_owned();
     }
     let single = part.chars().next().filter(|_| part.chars().count() == 1);
-    match single {
-        Some(c) => match greek_command(c) {
-            Some(command) => format!("\\{command}"),
-            None if matches!(c, 'x' | 'y' | 'z' | 'i') => c.to_string(),
-            None => format!("\\mathrm{{{}}}", mathematical(part)),
-        },
-        None => format!("\\mathrm{{{}}}", mathematical(part)),
+    match (single, single.and_then(greek_command)) {
+        (_, Some(command)) => format!("\\{command}"),
+        (Some(c @ ('x' | 'y' | 'z' | 'i')), None) => c.to_string(),
+        _ => format!("\\mathrm{{{}}}", mathematical(part)),
     }
 }
 
@@ -88,7 +85,7 @@ pub fn latex(math: &Math) -> String {
             sign => format!("{sign} "),
         },
         Math::Row(factors) => row(factors),
-        Math::Sum(terms) => sum(terms),
+        Math::Sum(terms) => Math::signed(terms, ["-", " + ", " - "], latex),
         Math::Fraction(above, below) => {
             format!("\\frac{{{}}}{{{}}}", latex(above), latex(below))
         }
@@ -101,36 +98,10 @@ pub fn latex(math: &Math) -> String {
             components,
             frame,
             column,
-        } => {
-            let Some(frame) = frame else {
-                let components: Vec<String> = components.iter().map(latex).collect();
-                return if *column {
-                    format!(
-                        "\\begin{{bmatrix}} {} \\end{{bmatrix}}",
-                        components.join(" \\\\ ")
-                    )
-                } else {
-                    format!("({})", components.join(",\\, "))
-                };
-            };
-            let between = if *column { " \\\\ " } else { " & " };
-            let turned = if *column { "" } else { "^{\\mathsf T}" };
-            let components: Vec<String> = components.iter().map(latex).collect();
-            format!(
-                "\\begin{{bmatrix}} {} \\end{{bmatrix}}{turned}_{{\\text{{{}}}}}",
-                components.join(between),
-                latex_text(frame)
-            )
-        }
+        } => vector(components, frame.as_deref(), *column),
         Math::Matrix(rows) => {
-            let rows: Vec<String> = rows
-                .iter()
-                .map(|row| row.iter().map(latex).collect::<Vec<_>>().join(" & "))
-                .collect();
-            format!(
-                "\\begin{{bmatrix}} {} \\end{{bmatrix}}",
-                rows.join(" \\\\ ")
-            )
+            let row = |row: &Vec<Math>| row.iter().map(latex).collect::<Vec<_>>().join(" & ");
+            matrix(&rows.iter().map(row).collect::<Vec<_>>(), " \\\\ ")
         }
         Math::Cases {
             value,
@@ -160,18 +131,26 @@ fn row(factors: &[Math]) -> String {
     out
 }
 
-fn sum(terms: &[(bool, Math)]) -> String {
-    let mut out = String::new();
-    for (k, (minus, term)) in terms.iter().enumerate() {
-        match (k, minus) {
-            (0, false) => {}
-            (0, true) => out.push('-'),
-            (_, false) => out.push_str(" + "),
-            (_, true) => out.push_str(" - "),
+/// Rows of a matrix in brackets.
+fn matrix(rows: &[String], between: &str) -> String {
+    format!("\\begin{{bmatrix}} {} \\end{{bmatrix}}", rows.join(between))
+}
+
+fn vector(components: &[Math], frame: Option<&str>, column: bool) -> String {
+    let components: Vec<String> = components.iter().map(latex).collect();
+    match (frame, column) {
+        (None, true) => matrix(&components, " \\\\ "),
+        (None, false) => format!("({})", components.join(",\\, ")),
+        (Some(frame), _) => {
+            let (between, turned) = if column {
+                (" \\\\ ", "")
+            } else {
+                (" & ", "^{\\mathsf T}")
+            };
+            let matrix = matrix(&components, between);
+            format!("{matrix}{turned}_{{\\text{{{}}}}}", latex_text(frame))
         }
-        out.push_str(&latex(term));
     }
-    out
 }
 
 fn bracketed(inner: &Math) -> String {

@@ -4,41 +4,14 @@
 //! `gamma_dot` is γ with a dot.
 
 /// Greek letters that have names of their own.
-const GREEK: [(&str, char); 33] = [
-    ("alpha", 'α'),
-    ("beta", 'β'),
-    ("gamma", 'γ'),
-    ("delta", 'δ'),
-    ("epsilon", 'ε'),
-    ("zeta", 'ζ'),
-    ("eta", 'η'),
-    ("theta", 'θ'),
-    ("iota", 'ι'),
-    ("kappa", 'κ'),
-    ("lambda", 'λ'),
-    ("mu", 'μ'),
-    ("nu", 'ν'),
-    ("xi", 'ξ'),
-    ("pi", 'π'),
-    ("rho", 'ρ'),
-    ("sigma", 'σ'),
-    ("tau", 'τ'),
-    ("upsilon", 'υ'),
-    ("phi", 'φ'),
-    ("chi", 'χ'),
-    ("psi", 'ψ'),
-    ("omega", 'ω'),
-    ("Gamma", 'Γ'),
-    ("Delta", 'Δ'),
-    ("Theta", 'Θ'),
-    ("Lambda", 'Λ'),
-    ("Xi", 'Ξ'),
-    ("Pi", 'Π'),
-    ("Sigma", 'Σ'),
-    ("Phi", 'Φ'),
-    ("Psi", 'Ψ'),
-    ("Omega", 'Ω'),
-];
+const GREEK: &str = "alpha=α beta=β gamma=γ delta=δ epsilon=ε zeta=ζ eta=η theta=θ iota=ι kappa=κ lambda=λ mu=μ nu=ν \
+    xi=ξ pi=π rho=ρ sigma=σ tau=τ upsilon=υ phi=φ chi=χ psi=ψ omega=ω Gamma=Γ Delta=Δ Theta=Θ \
+    Lambda=Λ Xi=Ξ Pi=Π Sigma=Σ Phi=Φ Psi=Ψ Omega=Ω";
+
+/// Their names and letters.
+fn greek_letters() -> impl Iterator<Item = (&'static str, &'static str)> {
+    GREEK.split(' ').filter_map(|row| row.split_once('='))
+}
 
 /// A letter with its dots, subscripts and superscript.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
@@ -176,25 +149,23 @@ impl Letter {
 }
 
 /// The Greek letter of a name.
-fn greek(word: &str) -> Option<char> {
-    GREEK.iter().find(|row| row.0 == word).map(|row| row.1)
+fn greek(word: &str) -> Option<&'static str> {
+    greek_letters().find(|row| row.0 == word).map(|row| row.1)
 }
 
 /// A Greek name as its letter, other text unchanged.
 fn label(part: &str) -> String {
-    greek(part).map_or_else(|| part.to_owned(), String::from)
+    greek(part).unwrap_or(part).to_owned()
 }
 
 /// The LaTeX command of a Greek letter, in the shape that Unicode gives it.
 pub(super) fn greek_command(letter: char) -> Option<&'static str> {
-    GREEK
-        .iter()
-        .find(|row| row.1 == letter)
-        .map(|row| match row.0 {
-            "phi" => "varphi",
-            "epsilon" => "varepsilon",
-            name => name,
-        })
+    let name = greek_letters().find(|row| row.1.starts_with(letter))?.0;
+    Some(match name {
+        "phi" => "varphi",
+        "epsilon" => "varepsilon",
+        name => name,
+    })
 }
 
 /// Unicode text: `ω̇₁`, `x_G`, `a⁰_A,x`.

@@ -102,6 +102,25 @@ impl Math {
         }
     }
 
+    /// Written terms with the signs before a first term that is subtracted, and before other ones that are added or
+    /// subtracted.
+    pub(super) fn signed(
+        terms: &[(bool, Self)],
+        [first_minus, plus, minus]: [&str; 3],
+        write: impl Fn(&Self) -> String,
+    ) -> String {
+        let sign = |place: usize, is_minus: bool| match (place, is_minus) {
+            (0, false) => "",
+            (0, true) => first_minus,
+            (_, false) => plus,
+            (_, true) => minus,
+        };
+        let terms = terms.iter().enumerate();
+        terms
+            .map(|(place, (minus, term))| sign(place, *minus).to_owned() + &write(term))
+            .collect()
+    }
+
     /// A small whole number.
     pub fn integer(value: usize) -> Self {
         Self::Integer(value.to_string())

@@ -51,11 +51,8 @@ pub fn mathml(math: &Math) -> String {
         Math::Sign(sign) => format!("<mo>{}</mo>", escaped(sign)),
         Math::Row(factors) => row(factors),
         Math::Sum(terms) => {
-            let mut out = String::new();
-            for (k, (minus, term)) in terms.iter().enumerate() {
-                out.push_str(sign(*minus, k == 0));
-                out.push_str(&mathml(term));
-            }
+            let signs = [sign(true, true), sign(false, false), sign(true, false)];
+            let out = Math::signed(terms, signs, mathml);
             format!("<mrow>{out}</mrow>")
         }
         Math::Fraction(above, below) => {

@@ -14,7 +14,10 @@ pub fn text(math: &Math) -> String {
         Math::Words(words) => one_line(words),
         Math::Sign(sign) => (*sign).to_owned(),
         Math::Row(factors) => factors.iter().map(text).collect::<Vec<_>>().join(" "),
-        Math::Sum(terms) => sum(terms),
+        Math::Sum(terms) => Math::signed(terms, ["−", " + ", " − "], |term| match term {
+            Math::Sum(_) => format!("({})", text(term)),
+            _ => text(term),
+        }),
         Math::Fraction(above, below) => {
             let above = match **above {
                 Math::Sum(_) => format!("({})", text(above)),
@@ -25,20 +28,13 @@ pub fn text(math: &Math) -> String {
             format!("{above}/{}", divisor(below))
         }
         Math::Power(base, exponent) => match &**exponent {
-            Math::Integer(digits) => {
-                format!(
-                    "{}{}",
-                    text(base),
-                    digits.chars().map(superscript).collect::<String>()
-                )
-            }
+            Math::Integer(digits) => format!("{}{}", text(base), raised(digits)),
             other => format!("{}^({})", text(base), text(other)),
         },
         Math::Call(name, exponent, argument) => {
-            let raised: String = if *exponent == 1 {
-                String::new()
-            } else {
-                exponent.to_string().chars().map(superscript).collect()
+            let raised = match exponent {
+                1 => String::new(),
+                exponent => raised(&exponent.to_string()),
             };
             match **argument {
                 Math::Letter(_) => format!("{name}{raised} {}", text(argument)),
@@ -103,25 +99,8 @@ fn divisor(below: &Math) -> String {
     }
 }
 
-fn sum(terms: &[(bool, Math)]) -> String {
-    let mut out = String::new();
-    for (index, (minus, term)) in terms.iter().enumerate() {
-        match (index, minus) {
-            (0, false) => {}
-            (0, true) => out.push('−'),
-            (_, false) => out.push_str(" + "),
-            (_, true) => out.push_str(" − "),
-        }
-        match term {
-            Math::Sum(_) => {
-                out.push('(');
-                out.push_str(&text(term));
-                out.push(')');
-            }
-            _ => out.push_str(&text(term)),
-        }
-    }
-    out
+fn raised(digits: &str) -> String {
+    digits.chars().map(superscript).collect()
 }
 
 fn ratio(n: &str, d: &str) -> String {

@@ -59,7 +59,7 @@ pub use format::Format;
 pub use includes::MAX_FILE;
 pub use letters::Letters;
 pub use lock::Lock;
-pub use mjcf::{Amount, Change, Corrected, JointNumber, corrected};
+pub use mjcf::{Amount, Change, Corrected, Number, corrected};
 pub use options::Options;
 pub use snap::SNAP;
 pub use without::Without;

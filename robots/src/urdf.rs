@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 
 use crate::inertia::Inertia;
 use crate::model::{Coupling, Joint, LeftOut, Link, Motion, Robot, Sum};
 use crate::options::Options;
 use crate::rotation::{Axis, Pose, Rotation, Vector, unit};
 use crate::without::Without;
-use crate::xml::{Element, Findings, child, children, elements, exactly, tag};
+use crate::xml::{Element, Findings, child, children, elements, exactly, no_such, no_type, tag};
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
 
@@ -141,10 +141,8 @@ fn unknown<'x>(
 
 /// A number from an attribute, with a default.
 fn number(element: Option<Element<'_>>, key: &str, default: f64, findings: &Findings) -> f64 {
-    let attribute = element.and_then(|element| element.attribute_node(key));
-    let read =
-        attribute.and_then(|attribute| exactly::<1>(findings, &attribute, &format!("`{key}`")));
-    read.map_or(default, |[number]| number)
+    let read = element.and_then(|element| crate::xml::number(findings, element, key));
+    read.unwrap_or(default)
 }
 
 fn vector(
@@ -272,16 +270,9 @@ fn link_of(
     };
     let link = links.get(attribute.value()).copied();
     if link.is_none() {
-        let known = || format!("the file has {} links, none of that name", links.len());
-        findings.error(
-            Code::UnknownReference,
-            attribute.range_value(),
-            format!(
-                "there is no link `{}`",
-                appell_spec::shown(attribute.value())
-            ),
-            did_you_mean(attribute.value(), links.keys().copied(), known),
-        );
+        let otherwise = format!("the file has {} links, none of that name", links.len());
+        let (name, at) = (attribute.value(), attribute.range_value());
+        findings.add(no_such("link", name, at, links.keys().copied(), &otherwise));
     }
     link
 }
@@ -316,15 +307,7 @@ fn moves(element: Element<'_>, name: &str, findings: &Findings) -> Vec<Joint> {
                 "floating",
                 "fixed",
             ];
-            findings.error(
-                Code::UnknownWord,
-                kind.range_value(),
-                format!(
-                    "there are no joints of type `{}`",
-                    appell_spec::shown(other)
-                ),
-                did_you_mean(other, kinds, || format!("types are {}", kinds.join(", "))),
-            );
+            findings.add(no_type("joints", other, kind.range_value(), &kinds));
             Vec::new()
         }
     }
@@ -419,14 +402,9 @@ fn mimic<'x>(
     };
     if !joints.contains_key(other.value()) {
         let moving = joints.keys().copied().filter(|name| moves(name));
-        findings.error(
-            Code::UnknownReference,
-            other.range_value(),
-            format!("there is no joint `{}`", appell_spec::shown(other.value())),
-            did_you_mean(other.value(), moving, || {
-                format!("joint `{name}` follows another joint of the file")
-            }),
-        );
+        let otherwise = format!("joint `{name}` follows another joint of the file");
+        let (name, at) = (other.value(), other.range_value());
+        findings.add(no_such("joint", name, at, moving, &otherwise));
         return None;
     }
     if moves(name) && has_several(joints[other.value()]) {

@@ -3,7 +3,7 @@
 use appell_spec::{Code, did_you_mean};
 
 use crate::inertia::Inertia;
-use crate::xml::{Element, Findings, children, exactly, tag};
+use crate::xml::{Element, Findings, children, exactly, number, tag};
 
 use super::orientation::Angles;
 
@@ -56,10 +56,7 @@ impl Compiler {
 
     fn add(&mut self, element: Element<'_>, findings: &Findings) {
         let word = |key: &str, words: &[&str]| word_of(element, key, words, findings);
-        let number = |key: &str| {
-            let given = element.attribute_node(key)?;
-            exactly::<1>(findings, &given, &format!("`{key}`")).map(|[number]| number)
-        };
+        let number = |key: &str| number(findings, element, key);
         if let Some(unit) = word("angle", &["degree", "radian"]) {
             self.angles.degrees = unit == 0;
         }

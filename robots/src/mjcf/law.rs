@@ -1,7 +1,7 @@
 //! The law of an actuator, as its element and the defaults of its class define it.
 
 use crate::model::is;
-use crate::xml::{Element, Findings, exactly, numbers};
+use crate::xml::{Element, Findings, number, numbers};
 
 use super::defaults::Defaults;
 use super::schema::ACTUATORS;
@@ -115,10 +115,7 @@ impl Law {
 
     /// Applies an element, as the functions `mjs_setTo…` of `MuJoCo` do.
     fn apply(&mut self, element: Element<'_>, findings: &Findings) {
-        let number = |key: &str| {
-            let given = element.attribute_node(key)?;
-            exactly::<1>(findings, &given, &format!("`{key}`")).map(|[number]| number)
-        };
+        let number = |key: &str| number(findings, element, key);
         let some = |key: &str, into: &mut [f64; 3]| {
             let given = element.attribute_node(key);
             let read = given.and_then(|given| numbers(findings, &given));

@@ -8,7 +8,7 @@ use appell_spec::{Code, Diagnostic, Report};
 use crate::includes::{Edit, MAX_FILE, Whole};
 use crate::letters::plain;
 use crate::rotation::{Pose, Vector, add, scaled};
-use crate::xml::{Element, Findings, Span, elements, exactly, inside, parse, tag};
+use crate::xml::{Element, Findings, Span, elements, exactly, inside, number, parse, tag};
 
 use super::compiler::Compiler;
 
@@ -93,9 +93,7 @@ fn copies(root: Element<'_>, element: Element<'_>, findings: &Findings) -> Vec<(
     };
     let offset = read("offset", "an offset, x y z,").unwrap_or_default();
     let turns = read("euler", "a set of Euler angles").unwrap_or_default();
-    let given = element.attribute_node("count");
-    let count = given.and_then(|given| exactly::<1>(findings, &given, "`count`"));
-    let count = count.map_or(0.0, |[count]| count);
+    let count = number(findings, element, "count").unwrap_or_default();
     if !(1.0..=MOST_COPIES).contains(&count) || count.fract() != 0.0 {
         let message = format!("`replicate` needs a `count` between 1 and {MOST_COPIES}");
         findings.error(

@@ -2,6 +2,7 @@
 //! left out, with a sentence on how the motion differs. Anything else is refused as invalid.
 
 use appell_spec::{Code, did_you_mean};
+use roxmltree::Attribute;
 
 use crate::model::LeftOut;
 use crate::xml::{Element, Findings, elements, tag};
@@ -251,7 +252,8 @@ const TENDONS: Row = Row::read(
 pub(super) const ACTUATORS: &str = "general motor position velocity intvelocity orientation pid damper cylinder muscle \
                                     adhesion dcmotor";
 
-fn has(words: &str, word: &str) -> bool {
+/// Whether a word is one of several, separated by blanks.
+pub(super) fn has(words: &str, word: &str) -> bool {
     words.split_ascii_whitespace().any(|own| own == word)
 }
 
@@ -322,19 +324,26 @@ pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<L
                     .into_iter()
                     .flat_map(str::split_ascii_whitespace);
                 let all = all.chain(row.left_out.iter().map(|(own, ..)| *own));
-                findings.error(
-                    Code::UnknownKey,
-                    attribute.range(),
-                    format!("`{name}` has no attribute `{}`", appell_spec::shown(key)),
-                    did_you_mean(key, all, || {
-                        "MuJoCo 4.0 does not know it: remove it, or correct its name".to_owned()
-                    }),
-                );
+                unknown_attribute(name, &attribute, all, findings);
             }
         }
         let inner: Vec<Element<'_>> = elements(element).collect();
         open.extend(inner.into_iter().rev());
     }
+}
+
+/// Refuses an attribute that elements of a name do not have.
+pub(super) fn unknown_attribute<'a>(
+    element: &str,
+    attribute: &Attribute<'_, '_>,
+    known: impl IntoIterator<Item = &'a str>,
+    findings: &Findings,
+) {
+    let key = attribute.name();
+    let message = format!("`{element}` has no attribute `{}`", appell_spec::shown(key));
+    let otherwise = "MuJoCo 4.0 does not know it: remove it, or correct its name";
+    let help = did_you_mean(key, known, || otherwise.to_owned());
+    findings.error(Code::UnknownKey, attribute.range(), message, help);
 }
 
 /// Whether a value of an attribute is neutral: one of several words, or zeros.

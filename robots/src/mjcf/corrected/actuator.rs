@@ -1,9 +1,9 @@
 //! Gains, biases, lags, delays and limits of actuators.
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 
 use crate::model::Drive;
-use crate::xml::{Element, Findings, children, elements, tag};
+use crate::xml::{Element, Findings, children, elements, no_such, tag};
 
 use super::super::law::Law;
 use super::super::schema::ACTUATORS;
@@ -39,12 +39,8 @@ impl<'x> Sheet<'x, '_> {
         found.ok_or_else(|| {
             let known: Vec<String> = all().map(called).collect();
             let known = known.iter().map(String::as_str);
-            refused(
-                Code::UnknownReference,
-                tag(self.root),
-                format!("there is no actuator `{}`", appell_spec::shown(name)),
-                did_you_mean(name, known, || "name an actuator of the file".to_owned()),
-            )
+            let help = "name an actuator of the file";
+            no_such("actuator", name, tag(self.root), known, help)
         })
     }
 
@@ -88,10 +84,6 @@ impl<'x> Sheet<'x, '_> {
         Err(refused(Code::NotAllowedHere, tag(actuator), message, help))
     }
 
-    #[allow(
-        clippy::unnecessary_box_returns,
-        reason = "all refusals are boxed, as errors of results"
-    )]
     fn no_such_gain(actuator: Element<'x>, name: &str, gain: &str) -> Refused {
         let kind = actuator.tag_name().name();
         let message = format!("`{kind}` `{name}` has no `{gain}`");
@@ -232,9 +224,9 @@ impl<'x> Sheet<'x, '_> {
         Ok(())
     }
 
-    pub(super) fn lag(&mut self, name: &str, seconds: f64) -> Result<(), Refused> {
+    pub(super) fn lag(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
         let (actuator, mut law) = self.affine(name)?;
-        let seconds = self.at_least_zero(name, "time constant", seconds);
+        let seconds = self.at_least_zero(name, "time constant", amount.of(law.lag()));
         let filter = law.filter_type.as_str();
         if !["none", "filter", "filterexact"].contains(&filter) {
             let message = format!("actuator `{name}` has the dynamics `{filter}`");
@@ -256,11 +248,10 @@ impl<'x> Sheet<'x, '_> {
         Ok(())
     }
 
-    pub(super) fn delay(&mut self, name: &str, seconds: f64) -> Result<(), Refused> {
+    pub(super) fn delay(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
         let actuator = self.actuator(name)?;
-        let seconds = self.at_least_zero(name, "delay", seconds);
-        let before = self.numbers(actuator, ACTUATORS, "delay")?;
-        let before = before.and_then(|all| all.first().copied()).unwrap_or(0.0);
+        let before = self.number_of(actuator, "delay")?.unwrap_or(0.0);
+        let seconds = self.at_least_zero(name, "delay", amount.of(before));
         if same(seconds, before) {
             return Ok(());
         }

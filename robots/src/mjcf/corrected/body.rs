@@ -1,13 +1,13 @@
 //! Masses, centres of mass, inertias and payloads of bodies.
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 
 use crate::format::Format;
 use crate::inertia::{Inertia, within_triangle};
 use crate::model::Robot;
 use crate::options::Options;
 use crate::rotation::{Pose, Vector};
-use crate::xml::{Element, Findings, children, tag};
+use crate::xml::{Element, Findings, children, no_such, tag};
 
 use super::super::compiler::InertiaFrom;
 use super::bytes::{number, numbers, same};
@@ -43,12 +43,8 @@ impl<'x> Sheet<'x, '_> {
         let found = links().find(|(_, link)| link.name == name);
         found.map(|(index, _)| index).ok_or_else(|| {
             let known = links().map(|(_, link)| link.name.as_str());
-            refused(
-                Code::UnknownReference,
-                tag(self.root),
-                format!("there is no body `{}`", appell_spec::shown(name)),
-                did_you_mean(name, known, || "name a body of the file".to_owned()),
-            )
+            let help = "name a body of the file";
+            no_such("body", name, tag(self.root), known, help)
         })
     }
 
@@ -207,7 +203,7 @@ impl<'x> Sheet<'x, '_> {
                 text.replace_range(place.clone(), &" ".repeat(place.len()));
             }
         }
-        let document = crate::xml::parse(&text).map_err(Box::new)?;
+        let document = crate::xml::parse(&text)?;
         let options = Options {
             floating: true,
             ..Options::default()

@@ -6,7 +6,7 @@ use crate::xml::{Element, child};
 
 use super::body::Group;
 use super::bytes::{number, numbers, same};
-use super::change::{Amount, JointNumber, Refused};
+use super::change::{Amount, Number, Refused};
 use super::sheet::Sheet;
 
 /// Attributes of `<dynamics>`.
@@ -29,7 +29,7 @@ impl<'x> Sheet<'x, '_> {
     pub(super) fn dynamics(
         &mut self,
         name: &str,
-        attribute: JointNumber,
+        attribute: Number,
         amount: Amount,
     ) -> Result<(), Refused> {
         let (_, joint) = self.joint_with_axis(name)?;
@@ -42,7 +42,7 @@ impl<'x> Sheet<'x, '_> {
             self.dynamics.push((joint, [damping?, friction?]));
             self.dynamics.len() - 1
         };
-        let place = usize::from(attribute == JointNumber::Frictionloss);
+        let place = usize::from(attribute == Number::Frictionloss);
         let before = self.dynamics[index].1[place];
         let after = self.at_least_zero(name, DYNAMICS[place], amount.of(before));
         self.dynamics[index].1[place] = after;

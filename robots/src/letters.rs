@@ -184,24 +184,23 @@ impl<'a> Numbers<'a> {
     }
 
     /// Names that matched nothing.
-    pub(crate) fn unused(&self) -> Vec<&str> {
+    pub(crate) fn unused(&self) -> Vec<String> {
         match self.letters {
             Letters::Matching(_) => self.patterns.unknown(),
             Letters::Of(chosen) => {
                 let unused = chosen.iter().filter(|one| !self.used.contains(*one));
-                unused.map(String::as_str).collect()
+                unused.cloned().collect()
             }
             _ => Vec::new(),
         }
     }
 
     /// Names that would have matched.
-    pub(crate) fn known(&self) -> impl Iterator<Item = &str> {
-        let known = match self.letters {
-            Letters::Matching(_) => self.patterns.known(),
+    pub(crate) fn known(&self) -> &BTreeSet<String> {
+        match self.letters {
+            Letters::Matching(_) => &self.patterns.known,
             _ => &self.known,
-        };
-        known.iter().map(String::as_str)
+        }
     }
 }
 

@@ -261,21 +261,15 @@ pub fn import_with(
     let tree = tree::merged(&robot.links, &findings);
     if tree.bodies.is_empty() && !findings.has_errors() {
         let help = "joints are revolute, continuous, prismatic, planar or floating (URDF), hinge, slide, ball or free (MJCF)";
-        findings.error(
-            Code::MissingSection,
-            xml::tag(root),
-            "the robot has no joint that moves",
-            help,
-        );
+        let message = "the robot has no joint that moves";
+        findings.error(Code::MissingSection, xml::tag(root), message, help);
     }
     if tree.bodies.len() > MAX_ITEMS {
         let count = tree.bodies.len();
-        findings.error(
-            Code::LimitExceeded,
-            xml::tag(root),
-            format!("the robot has {count} joints that move"),
-            format!("a spec has at most {MAX_ITEMS} coordinates: import a part of the robot"),
-        );
+        let message = format!("the robot has {count} joints that move");
+        let help =
+            format!("a spec has at most {MAX_ITEMS} coordinates: import a part of the robot");
+        findings.error(Code::LimitExceeded, xml::tag(root), message, help);
         return Err(fail(findings.into_inner()));
     }
     let equations = loops::equations(&robot, &tree, &findings);

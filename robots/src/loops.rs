@@ -85,15 +85,13 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
         let place = most
             .chain(robot.couplings.iter().map(|one| &one.place))
             .next();
-        findings.error(
-            Code::LimitExceeded,
-            place.cloned().unwrap_or_default(),
-            format!(
-                "{count} equations between {} rates are too many",
-                places.freedoms.len()
-            ),
-            "leave the couplings out, or import a part of the robot",
+        let message = format!(
+            "{count} equations between {} rates are too many",
+            places.freedoms.len()
         );
+        let help = "leave the couplings out, or import a part of the robot";
+        let place = place.cloned().unwrap_or_default();
+        findings.error(Code::LimitExceeded, place, message, help);
         return Equations::default();
     }
     let mut equations = Equations::default();
@@ -234,16 +232,13 @@ impl<'a> Places<'a> {
                 (&connection.name, &connection.place)
             }
         };
-        findings.error(
-            Code::NotAllowedHere,
-            place.clone(),
-            format!(
-                "`{}` cannot hold near the joint positions: its residual is {} in SI units",
-                appell_spec::shown(name),
-                crate::letters::plain((off * 1e6).round() / 1e6)
-            ),
-            "correct places, lengths or values, or import it without couplings",
+        let message = format!(
+            "`{}` cannot hold near the joint positions: its residual is {} in SI units",
+            appell_spec::shown(name),
+            crate::letters::plain((off * 1e6).round() / 1e6)
         );
+        let help = "correct places, lengths or values, or import it without couplings";
+        findings.error(Code::NotAllowedHere, place.clone(), message, help);
     }
 
     /// All equations at a configuration.
@@ -452,15 +447,13 @@ impl<'a> Places<'a> {
         };
         let connection = &self.robot.connections[*connection];
         let joint = &self.tree.bodies[follower.body].joint.name;
-        findings.error(
-            Code::NotAllowedHere,
-            connection.place.clone(),
-            format!(
-                "`{}` closes a loop in which the attitude of joint `{joint}` would have to follow",
-                connection.name
-            ),
-            "connect a body on a ball joint or a free joint by a point only, or use hinges",
+        let message = format!(
+            "`{}` closes a loop in which the attitude of joint `{joint}` would have to follow",
+            connection.name
         );
+        let help = "connect a body on a ball joint or a free joint by a point only, or use hinges";
+        let place = connection.place.clone();
+        findings.error(Code::NotAllowedHere, place, message, help);
     }
 
     /// Refuses a joint without inertia along it, dependent coordinates included, as it has no equation of motion.
@@ -479,12 +472,12 @@ impl<'a> Places<'a> {
         if let Some(freedom) = mass::without_inertia(&m, &rows) {
             let body = &self.tree.bodies[self.follower(freedom).body];
             let (link, joint) = (&links[body.link].name, &body.joint.name);
-            findings.error(
-                Code::SingularMassMatrix,
-                links[body.link].place.clone(),
-                format!("`{link}` moves by joint `{joint}` but has no inertia along it, nor has anything on it"),
-                "give it a mass and an inertia, or make the joint fixed",
+            let message = format!(
+                "`{link}` moves by joint `{joint}` but has no inertia along it, nor has anything on it"
             );
+            let help = "give it a mass and an inertia, or make the joint fixed";
+            let place = links[body.link].place.clone();
+            findings.error(Code::SingularMassMatrix, place, message, help);
         }
     }
 

@@ -135,12 +135,9 @@ pub(crate) fn read(
         }
     }
     if reader.links.is_empty() {
-        findings.error(
-            Code::MissingSection,
-            tag(root),
-            "the file has no body",
-            "an MJCF has `<worldbody>` with `<body>`s",
-        );
+        let message = "the file has no body";
+        let help = "an MJCF has `<worldbody>` with `<body>`s";
+        findings.error(Code::MissingSection, tag(root), message, help);
     }
     if let Some(total) = reader.compiler.total_mass {
         reader.scale_to(total);
@@ -155,15 +152,11 @@ pub(crate) fn read(
         (damped, "dampratio", "write `kv`"),
     ] {
         if !done {
-            findings.error(
-                Code::LimitExceeded,
-                tag(root),
-                format!(
-                    "`{what}` is limited to {} degrees of freedom",
-                    mass::MOST_FREEDOMS
-                ),
-                help,
+            let message = format!(
+                "`{what}` is limited to {} degrees of freedom",
+                mass::MOST_FREEDOMS
             );
+            findings.error(Code::LimitExceeded, tag(root), message, help);
         }
     }
     let is_off = |flag: &str| schema::disabled(root, flag);
@@ -283,12 +276,10 @@ impl<'x> Reader<'x, '_> {
         let help = "let MuJoCo write out the bodies that it makes, and import `flat.xml`: \
                     `python -c \"import mujoco; s = mujoco.MjSpec.from_file('FILE'); s.compile(); \
                     open('flat.xml', 'w').write(s.to_xml())\"`";
-        self.findings.error(
-            Code::NotAllowedHere,
-            tag(element),
-            format!("`{name}` changes the tree of bodies, and `import` does not read it yet"),
-            help,
-        );
+        let message =
+            format!("`{name}` changes the tree of bodies, and `import` does not read it yet");
+        self.findings
+            .error(Code::NotAllowedHere, tag(element), message, help);
     }
 
     /// Reads the children of a body, a frame or the world.
@@ -475,12 +466,11 @@ impl<'x> Reader<'x, '_> {
         };
         let inertia = self.compiler.corrected(inertia).without_rounding();
         if let Some(reason) = inertia.impossible() {
-            self.findings.warning(
-                Code::NotPhysical,
-                tag(inertial.map_or(body, |inertial| inertial.element)),
-                format!("no body can have the inertia of `{name}`: {reason}"),
-                "it is taken as it is; the motion is right wherever the mass matrix is positive definite",
-            );
+            let message = format!("no body can have the inertia of `{name}`: {reason}");
+            let help = "it is taken as it is; the motion is right wherever the mass matrix is positive definite";
+            let place = tag(inertial.map_or(body, |inertial| inertial.element));
+            self.findings
+                .warning(Code::NotPhysical, place, message, help);
         }
         inertia
     }

@@ -56,7 +56,8 @@ fn is_attribute_of(name: &str, attribute: &str) -> bool {
 #[derive(Debug)]
 pub(crate) struct Patterns<'a> {
     all: &'a [String],
-    known: BTreeSet<String>,
+    /// All names that exist.
+    pub(crate) known: BTreeSet<String>,
     /// By body: those that are fixed to it.
     fixed_to: BTreeMap<String, Vec<String>>,
 }
@@ -111,7 +112,7 @@ impl<'a> Patterns<'a> {
     }
 
     /// Names without an element, and patterns without an attribute.
-    pub(crate) fn unknown(&self) -> Vec<&str> {
+    pub(crate) fn unknown(&self) -> Vec<String> {
         let is_known = |pattern: &&String| {
             if pattern.contains('*') {
                 ATTRIBUTES.iter().any(|one| is_attribute_of(pattern, one))
@@ -121,12 +122,7 @@ impl<'a> Patterns<'a> {
             }
         };
         let unknown = self.all.iter().filter(|pattern| !is_known(pattern));
-        unknown.map(String::as_str).collect()
-    }
-
-    /// All names that exist.
-    pub(crate) fn known(&self) -> &BTreeSet<String> {
-        &self.known
+        unknown.cloned().collect()
     }
 }
 

@@ -135,13 +135,8 @@ pub(crate) fn write(
     Written {
         text,
         lines,
-        unused: writer
-            .numbers
-            .unused()
-            .into_iter()
-            .map(str::to_owned)
-            .collect(),
-        known: writer.numbers.known().map(str::to_owned).collect(),
+        unused: writer.numbers.unused(),
+        known: writer.numbers.known().iter().cloned().collect(),
         dictionary: writer.dictionary,
     }
 }
@@ -328,10 +323,8 @@ impl<'a> Writer<'a> {
         let count = self.tree.bodies.len();
         let joints = if count == 1 { "joint" } else { "joints" };
         mechanism.key("name", quoted(name));
-        mechanism.key(
-            "title",
-            quoted(&sentence(&format!("{title}, {count} {joints}"))),
-        );
+        let title = sentence(&format!("{title}, {count} {joints}"));
+        mechanism.key("title", quoted(&title));
         mechanism.key("source", quoted(&sentence(file)));
         let mut parameters = Section::default();
         for Parameter {
@@ -346,12 +339,7 @@ impl<'a> Writer<'a> {
                 .raw("value", &crate::letters::plain(*value))
                 .text("unit", unit)
                 .text("about", &sentence(about));
-            let item = if *never_negative {
-                item.raw("at_least", "0")
-            } else {
-                item
-            };
-            parameters.add(name, &item);
+            parameters.add(name, &item.raw_if(*never_negative, "at_least", "0"));
         }
         mechanism.write("mechanism", text, lines);
         for (title, section) in [

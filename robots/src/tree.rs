@@ -90,12 +90,10 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
             },
             Some(joint) => {
                 if joint.motion == Motion::Free && on.body.is_some() {
-                    findings.error(
-                        Code::NotAllowedHere,
-                        link.place.clone(),
-                        format!("`{}` floats, but stands on a link that moves", link.name),
-                        "only what stands on the ground can float",
-                    );
+                    let message =
+                        format!("`{}` floats, but stands on a link that moves", link.name);
+                    let help = "only what stands on the ground can float";
+                    findings.error(Code::NotAllowedHere, link.place.clone(), message, help);
                 }
                 tree.moved_by(joint, index, on.body, pose)
             }
@@ -103,15 +101,12 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
         seats.push(seat);
         let inertia = link.inertia.placed(seat.pose);
         if !inertia.is_finite() || !pose.position.iter().all(|one| one.is_finite()) {
-            findings.error(
-                Code::NotFinite,
-                link.place.clone(),
-                format!(
-                    "place or inertia of `{}` are too large for a number",
-                    link.name
-                ),
-                "give lengths in m, masses in kg",
+            let message = format!(
+                "place or inertia of `{}` are too large for a number",
+                link.name
             );
+            let help = "give lengths in m, masses in kg";
+            findings.error(Code::NotFinite, link.place.clone(), message, help);
         }
         let part = Part {
             link: index,

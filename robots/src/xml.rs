@@ -219,12 +219,9 @@ pub(crate) fn numbers(findings: &Findings, attribute: &Attribute<'_, '_>) -> Opt
         match word.parse::<f64>() {
             Ok(number) if number.is_finite() => numbers.push(number),
             _ => {
-                findings.error(
-                    Code::WrongType,
-                    attribute.range_value(),
-                    format!("`{}` is not a number", shown(word)),
-                    instead(word),
-                );
+                let message = format!("`{}` is not a number", shown(word));
+                let help = instead(word);
+                findings.error(Code::WrongType, attribute.range_value(), message, help);
                 return None;
             }
         }
@@ -262,12 +259,9 @@ pub(crate) fn exactly<const N: usize>(
             &format!("here are {count}")
         };
         let plural = if N == 1 { "number" } else { "numbers" };
-        findings.error(
-            Code::WrongType,
-            attribute.range_value(),
-            format!("`{}` has {count} of {N} {plural}", attribute.name()),
-            format!("{what} has {N} {plural}; {is}"),
-        );
+        let message = format!("`{}` has {count} of {N} {plural}", attribute.name());
+        let help = format!("{what} has {N} {plural}; {is}");
+        findings.error(Code::WrongType, attribute.range_value(), message, help);
         None
     })
 }

@@ -114,12 +114,10 @@ impl<'x> Reader<'x, '_> {
                 (on, tendon.range, &mut tendon.armature, &mut tendon.damping)
             } else {
                 if armature != 0.0 || !is_zero(damping) {
-                    self.findings.warning(
-                        Code::NotAllowedHere,
-                        tag(element),
-                        "inertia and damping of this drive are left out",
-                        "they are read where it drives a hinge, a slide or a fixed tendon",
-                    );
+                    let message = "inertia and damping of this drive are left out";
+                    let help = "they are read where it drives a hinge, a slide or a fixed tendon";
+                    self.findings
+                        .warning(Code::NotAllowedHere, tag(element), message, help);
                 }
                 self.leave_out_drive(element, OTHER_WAY);
                 continue;

@@ -145,12 +145,8 @@ impl Sheet<'_, '_> {
                 self.format.word()
             );
             let help = "it has inertias of links, and damping and friction of joints";
-            return Err(refused(
-                Code::NotAllowedHere,
-                xml::tag(self.root),
-                message,
-                help,
-            ));
+            let place = xml::tag(self.root);
+            return Err(refused(Code::NotAllowedHere, place, message, help));
         }
         match change {
             Change::Number { of, number, amount } => self.number(of, *number, *amount),

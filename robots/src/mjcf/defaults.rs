@@ -40,12 +40,8 @@ impl<'x> Defaults<'x> {
                 (None, None) => MAIN,
                 (None, Some(_)) => {
                     let help = "write `<default class=\"…\">`";
-                    findings.error(
-                        Code::MissingKey,
-                        tag(element),
-                        "a default class without a name",
-                        help,
-                    );
+                    let message = "a default class without a name";
+                    findings.error(Code::MissingKey, tag(element), message, help);
                     continue;
                 }
             };

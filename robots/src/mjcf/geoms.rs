@@ -131,12 +131,10 @@ impl<'x> Reader<'x, '_> {
     }
 
     fn mass_unknown(&self, geom: Element<'_>, what: &str) {
-        self.findings.error(
-            Code::NotAllowedHere,
-            tag(geom),
-            format!("the mass of a geom is not known, {what}"),
-            "give the body an `inertial`, or the geom `mass=\"0\"`",
-        );
+        let message = format!("the mass of a geom is not known, {what}");
+        let help = "give the body an `inertial`, or the geom `mass=\"0\"`";
+        self.findings
+            .error(Code::NotAllowedHere, tag(geom), message, help);
     }
 
     /// Where a geom is, and half its length if it is given by its ends.
@@ -149,12 +147,9 @@ impl<'x> Reader<'x, '_> {
         let way = minus(to, from);
         let Some(direction) = unit(way) else {
             let help = "give two different ends, or `pos` and `size`";
-            self.findings.error(
-                Code::VanishingLength,
-                ends.range_value(),
-                "both ends are at one place",
-                help,
-            );
+            let message = "both ends are at one place";
+            self.findings
+                .error(Code::VanishingLength, ends.range_value(), message, help);
             return None;
         };
         let pose = Pose {

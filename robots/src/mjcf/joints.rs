@@ -115,14 +115,12 @@ impl<'x> Reader<'x, '_> {
                     ""
                 };
                 let name = &joint.name;
-                self.findings.warning(
-                    Code::NotAllowedHere,
-                    joint.place.clone(),
-                    format!(
-                        "`{what}`{which} of joint `{name}` is left out, which changes the motion"
-                    ),
-                    "it needs a hinge or a slide; add a load to the spec",
+                let message = format!(
+                    "`{what}`{which} of joint `{name}` is left out, which changes the motion"
                 );
+                let help = "it needs a hinge or a slide; add a load to the spec";
+                self.findings
+                    .warning(Code::NotAllowedHere, joint.place.clone(), message, help);
             }
         }
         Joint {

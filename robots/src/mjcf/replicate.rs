@@ -59,12 +59,8 @@ fn next(text: &str, count: usize) -> Result<Option<Vec<Edit>>, Vec<Diagnostic>> 
     if let Some(joint) = joints {
         let help = "write `<body>` around it";
         let name = joint.tag_name().name();
-        findings.error(
-            Code::NotAllowedHere,
-            tag(joint),
-            format!("`replicate` holds a `{name}`"),
-            help,
-        );
+        let message = format!("`replicate` holds a `{name}`");
+        findings.error(Code::NotAllowedHere, tag(joint), message, help);
     }
     let size = copies.len().saturating_mul(element.range().len()) + text.len();
     if count >= MOST || size as u64 > MAX_FILE {
@@ -72,12 +68,8 @@ fn next(text: &str, count: usize) -> Result<Option<Vec<Edit>>, Vec<Diagnostic>> 
             "copies make the file larger than {} MiB, or there are more than {MOST} `replicate`",
             MAX_FILE >> 20
         );
-        findings.error(
-            Code::LimitExceeded,
-            tag(element),
-            message,
-            "write fewer copies",
-        );
+        let help = "write fewer copies";
+        findings.error(Code::LimitExceeded, tag(element), message, help);
     }
     if findings.has_errors() {
         return Err(findings.into_inner());
@@ -96,12 +88,8 @@ fn copies(root: Element<'_>, element: Element<'_>, findings: &Findings) -> Vec<(
     let count = number(findings, element, "count").unwrap_or_default();
     if !(1.0..=MOST_COPIES).contains(&count) || count.fract() != 0.0 {
         let message = format!("`replicate` needs a `count` between 1 and {MOST_COPIES}");
-        findings.error(
-            Code::MissingKey,
-            tag(element),
-            message,
-            "write `count=\"3\"`",
-        );
+        let help = "write `count=\"3\"`";
+        findings.error(Code::MissingKey, tag(element), message, help);
         return Vec::new();
     }
     let separator = element.attribute("sep").unwrap_or_default();

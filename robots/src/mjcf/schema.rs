@@ -295,14 +295,11 @@ pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<L
             };
             let known = all().flat_map(|row| row.element.split_ascii_whitespace());
             let within = holder.map_or("", |holder| holder.tag_name().name());
-            findings.error(
-                Code::UnknownKey,
-                tag(element),
-                format!("`{within}` holds no element `{}`", appell_spec::shown(name)),
-                did_you_mean(name, known, || {
-                    "MuJoCo 4.0 allows none there: move it, or remove it".to_owned()
-                }),
-            );
+            let message = format!("`{within}` holds no element `{}`", appell_spec::shown(name));
+            let help = did_you_mean(name, known, || {
+                "MuJoCo 4.0 allows none there: move it, or remove it".to_owned()
+            });
+            findings.error(Code::UnknownKey, tag(element), message, help);
             continue;
         };
         if !row.open {

@@ -63,12 +63,8 @@ impl<'x> Sheet<'x, '_> {
         let link = &self.robot.links[link];
         self.at(&link.place).ok_or_else(|| {
             let message = format!("body `{}` has no element", link.name);
-            refused(
-                Code::UnknownReference,
-                tag(self.root),
-                message,
-                "name a body of the file",
-            )
+            let help = "name a body of the file";
+            refused(Code::UnknownReference, tag(self.root), message, help)
         })
     }
 
@@ -78,12 +74,8 @@ impl<'x> Sheet<'x, '_> {
         let Some((head, pose)) = self.head(link) else {
             let message = format!("body `{name}` does not move");
             let help = "its mass changes nothing: name a body with a joint";
-            return Err(refused(
-                Code::NotAllowedHere,
-                tag(self.body(link)?),
-                message,
-                help,
-            ));
+            let place = tag(self.body(link)?);
+            return Err(refused(Code::NotAllowedHere, place, message, help));
         };
         let known = self.groups.iter().position(|group| group.head == head);
         let index = known.unwrap_or_else(|| {

@@ -215,23 +215,26 @@ impl Expr {
         }
     }
 
-    /// Visits every quantity of the expression, from left to right.
-    pub fn visit(&self, seen: &mut dyn FnMut(Quantity)) {
+    /// The expressions of which it consists, from left to right.
+    pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
-            ExprKind::Number(_) => {}
-            ExprKind::Quantity(quantity) => seen(*quantity),
-            ExprKind::Negate(a) => a.visit(seen),
-            ExprKind::Binary(_, a, b) => {
-                a.visit(seen);
-                b.visit(seen);
-            }
-            ExprKind::Call(_, arguments) => arguments.iter().for_each(|a| a.visit(seen)),
+            ExprKind::Number(_) | ExprKind::Quantity(_) => Vec::new(),
+            ExprKind::Negate(a) => vec![a],
+            ExprKind::Binary(_, a, b) => vec![a, b],
+            ExprKind::Call(_, arguments) => arguments.iter().collect(),
             ExprKind::Choice {
                 compared, branches, ..
-            } => compared
-                .iter()
-                .chain(branches.iter())
-                .for_each(|a| a.visit(seen)),
+            } => compared.iter().chain(branches.iter()).collect(),
+        }
+    }
+
+    /// Visits every quantity of the expression, from left to right.
+    pub fn visit(&self, seen: &mut dyn FnMut(Quantity)) {
+        if let ExprKind::Quantity(quantity) = &self.kind {
+            seen(*quantity);
+        }
+        for part in self.parts() {
+            part.visit(seen);
         }
     }
 }

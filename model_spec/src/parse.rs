@@ -191,14 +191,8 @@ impl Reader<'_> {
             |similar| suggest::meant(&format!("[{similar}]")),
         );
         self.incomplete = true;
-        self.tell(
-            Diagnostic::error(
-                Code::UnknownSection,
-                format!("unknown section `{}`", shown(name)),
-            )
-            .at(at, "")
-            .help(help),
-        );
+        let message = format!("unknown section `{}`", shown(name));
+        self.error(Code::UnknownSection, at, message, help);
     }
 
     fn missing_sections(&mut self, found: &[SectionAst]) {
@@ -220,14 +214,9 @@ impl Reader<'_> {
                 } else {
                     "missing"
                 };
-                self.tell(
-                    Diagnostic::error(
-                        Code::MissingSection,
-                        format!("the section `[{}]` is {state}", section.name),
-                    )
-                    .at(at, "")
-                    .help(phrase(section.about)),
-                );
+                let message = format!("the section `[{}]` is {state}", section.name);
+                let help = phrase(section.about);
+                self.error(Code::MissingSection, at, message, help);
             }
         }
     }

@@ -206,32 +206,15 @@ fn negative(expr: Expr) -> Expr {
 
 /// Whether two expressions are syntactically equal.
 fn same(a: &Expr, b: &Expr) -> bool {
-    match (&a.kind, &b.kind) {
+    let is_alike = match (&a.kind, &b.kind) {
         (ExprKind::Number(x), ExprKind::Number(y)) => x == y,
         (ExprKind::Quantity(x), ExprKind::Quantity(y)) => x == y,
-        (ExprKind::Negate(x), ExprKind::Negate(y)) => same(x, y),
-        (ExprKind::Binary(p, a, b), ExprKind::Binary(q, c, d)) => {
-            p == q && same(a, c) && same(b, d)
-        }
-        (ExprKind::Call(f, a), ExprKind::Call(g, b)) => {
-            f == g && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
-        }
-        (
-            ExprKind::Choice {
-                relation: r,
-                compared: a,
-                branches: b,
-            },
-            ExprKind::Choice {
-                relation: s,
-                compared: c,
-                branches: d,
-            },
-        ) => {
-            r == s
-                && a.iter().zip(c.iter()).all(|(a, c)| same(a, c))
-                && b.iter().zip(d.iter()).all(|(b, d)| same(b, d))
-        }
+        (ExprKind::Negate(_), ExprKind::Negate(_)) => true,
+        (ExprKind::Binary(p, ..), ExprKind::Binary(q, ..)) => p == q,
+        (ExprKind::Call(f, _), ExprKind::Call(g, _)) => f == g,
+        (ExprKind::Choice { relation: r, .. }, ExprKind::Choice { relation: s, .. }) => r == s,
         _ => false,
-    }
+    };
+    let (own, others) = (a.parts(), b.parts());
+    is_alike && own.len() == others.len() && own.iter().zip(others).all(|(a, b)| same(a, b))
 }

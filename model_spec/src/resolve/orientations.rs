@@ -1,6 +1,6 @@
 //! Orientations by unit quaternions: the four coordinates of a frame, and the constraint that keeps their norm.
 
-use crate::ast::{ItemAst, ValueAst};
+use crate::ast::ItemAst;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{BinaryOp, Expr, ExprKind, Quantity, Span};
 use crate::ids::CoordinateId;
@@ -12,9 +12,7 @@ use super::resolver::Resolver;
 impl Resolver<'_> {
     /// The coordinates of a frame's quaternion, scalar part first; none if the frame is rotated by angles.
     pub(super) fn quaternion(&mut self, item: &ItemAst) -> Option<[CoordinateId; 4]> {
-        let Some(ValueAst::Four(names)) = item.entry("quaternion").map(|entry| &entry.value) else {
-            return None;
-        };
+        let names = item.names("quaternion")?;
         let mut taken = [CoordinateId::new(0); 4];
         for (target, name) in taken.iter_mut().zip(names.iter()) {
             *target = self.find(&name.value, &name.span)?;

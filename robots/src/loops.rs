@@ -509,7 +509,7 @@ impl<'a> Places<'a> {
         };
         let origin = self.drawn[moved.link].of(origin);
         let at = self.axes(body, &self.drawn).inverse().of(minus(at, origin));
-        (Some(body), crate::inertia::position_without_rounding(at))
+        (Some(body), crate::inertia::without_rounding(at))
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use appell_spec::Code;
 
-use crate::inertia::{Inertia, position_without_rounding};
+use crate::inertia::{Inertia, without_rounding};
 use crate::model::{Joint, Link, Motion};
 use crate::rotation::{Axis, Pose, Rotation, Turn, Vector, scaled};
 use crate::xml::Findings;
@@ -110,7 +110,7 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
         }
         let part = Part {
             link: index,
-            position: position_without_rounding(seat.pose.position),
+            position: without_rounding(seat.pose.position),
             centre: inertia.centre,
         };
         match seat.body {
@@ -174,7 +174,7 @@ impl Tree {
             own,
             axis,
             offset,
-            position: position_without_rounding(pose.of(anchor)),
+            position: without_rounding(pose.of(anchor)),
             inertia: Inertia::NONE,
             parts: Vec::new(),
             keeps_axes: own == Rotation::IDENTITY,

@@ -170,7 +170,7 @@ impl<'x> Sheet<'x, '_> {
 
     pub(super) fn gear(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
         let actuator = self.actuator(name)?;
-        let before = self.number_of(actuator, "gear")?.unwrap_or(1.0);
+        let before = self.first(actuator, ACTUATORS, "gear")?.unwrap_or(1.0);
         let after = amount.of(before);
         if same(after, before) {
             return Ok(());
@@ -250,7 +250,7 @@ impl<'x> Sheet<'x, '_> {
 
     pub(super) fn delay(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
         let actuator = self.actuator(name)?;
-        let before = self.number_of(actuator, "delay")?.unwrap_or(0.0);
+        let before = self.first(actuator, ACTUATORS, "delay")?.unwrap_or(0.0);
         let seconds = self.at_least_zero(name, "delay", amount.of(before));
         if same(seconds, before) {
             return Ok(());
@@ -271,9 +271,8 @@ impl<'x> Sheet<'x, '_> {
             (seconds, (seconds / step).ceil())
         };
         self.set(actuator, "delay", number(delay))?;
-        let given = self.numbers(actuator, ACTUATORS, "nsample")?;
-        let enough = given.is_some_and(|all| all.first().is_some_and(|one| *one >= samples));
-        if !enough {
+        let given = self.first(actuator, ACTUATORS, "nsample")?;
+        if given.is_none_or(|given| given < samples) {
             self.set(actuator, "nsample", number(samples))?;
         }
         if !is_near && self.given(actuator, ACTUATORS, "interp").is_none() {
@@ -357,21 +356,20 @@ impl<'x> Sheet<'x, '_> {
             let named = ["joint", "jointinparent"].map(|key| actuator.attribute(key));
             named.contains(&Some(joint))
         });
-        own.map(|actuator| Ok((actuator, self.number_of(actuator, "gear")?.unwrap_or(1.0))))
-            .collect()
-    }
-
-    /// The first number of an attribute of an actuator.
-    fn number_of(&self, actuator: Element<'x>, key: &str) -> Result<Option<f64>, Refused> {
-        let all = self.numbers(actuator, ACTUATORS, key)?;
-        Ok(all.and_then(|all| all.first().copied()))
+        own.map(|actuator| {
+            Ok((
+                actuator,
+                self.first(actuator, ACTUATORS, "gear")?.unwrap_or(1.0),
+            ))
+        })
+        .collect()
     }
 
     /// What actuators of a joint add to its armature or damping by attributes of this name.
     pub(super) fn carried(&self, joint: &str, key: &str) -> Result<f64, Refused> {
         let mut sum = 0.0;
         for (actuator, gear) in self.drives_of(joint)? {
-            sum += gear * gear * self.number_of(actuator, key)?.unwrap_or_default();
+            sum += gear * gear * self.first(actuator, ACTUATORS, key)?.unwrap_or_default();
         }
         Ok(sum)
     }
@@ -459,41 +457,34 @@ impl<'x> Sheet<'x, '_> {
             }
             self.rename(actuator, "general")?;
         }
-        let kinds = |law: &'_ Law| {
-            let all = [&law.filter_type, &law.gain_type, &law.bias_type];
-            all.map(Clone::clone)
-        };
-        let keys = ["dyntype", "gaintype", "biastype"].into_iter();
-        let neutral = ["none", "fixed", "none"].into_iter();
-        let words = kinds(law).into_iter().zip(kinds(class)).zip(kinds(before));
-        for ((key, neutral), ((word, of_class), was)) in keys.zip(neutral).zip(words) {
+        let types = [
+            ("dyntype", "none"),
+            ("gaintype", "fixed"),
+            ("biastype", "none"),
+        ];
+        for (key, neutral) in types {
+            let [word, of_class, was] = [law, class, before].map(|law| match key {
+                "dyntype" => &law.filter_type,
+                "gaintype" => &law.gain_type,
+                _ => &law.bias_type,
+            });
             let changes = converted || word != was;
             if changes && (word != neutral || of_class != neutral) {
-                self.set(actuator, key, word)?;
+                self.set(actuator, key, word.as_str())?;
             }
         }
         let [filtered, affine] = [&law.filter_type, &law.bias_type].map(|word| word != "none");
         let lists = [
-            (
-                "dynprm",
-                1,
-                filtered,
-                [law, class, before].map(|law| vec![law.time]),
-            ),
-            (
-                "gainprm",
-                1,
-                true,
-                [law, class, before].map(|law| law.gain.to_vec()),
-            ),
-            (
-                "biasprm",
-                AFFINE,
-                affine,
-                [law, class, before].map(|law| law.bias.to_vec()),
-            ),
+            ("dynprm", 1, filtered),
+            ("gainprm", 1, true),
+            ("biasprm", AFFINE, affine),
         ];
-        for (key, least, acts, [list, of_class, was]) in lists {
+        for (key, least, acts) in lists {
+            let [list, of_class, was] = [law, class, before].map(|law| match key {
+                "dynprm" => vec![law.time],
+                "gainprm" => law.gain.to_vec(),
+                _ => law.bias.to_vec(),
+            });
             if !acts || !converted && numbers(&list) == numbers(&was) {
                 continue;
             }
@@ -548,7 +539,6 @@ fn called(actuator: Element<'_>) -> String {
     let drives = ["joint", "jointinparent", "tendon"];
     let drives = drives.iter().find_map(|key| actuator.attribute(*key));
     let unnamed = || format!("{kind}_{}", drives.unwrap_or_default());
-    actuator
-        .attribute("name")
-        .map_or_else(unnamed, str::to_owned)
+    let name = actuator.attribute("name");
+    name.map_or_else(unnamed, str::to_owned)
 }

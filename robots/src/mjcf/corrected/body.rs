@@ -244,10 +244,6 @@ impl<'x> Sheet<'x, '_> {
             }
             self.reshaped = true;
             self.tell_whole(&group);
-            if self.format == Format::Urdf {
-                self.write_links(&group)?;
-                continue;
-            }
             self.use_inertials()?;
             self.write_group(&group)?;
             self.add_to_total(group.after.mass - group.before.mass)?;
@@ -272,17 +268,27 @@ impl<'x> Sheet<'x, '_> {
     }
 
     fn write_group(&mut self, group: &Group) -> Result<(), Refused> {
-        let body = self.body(group.head)?;
-        let inertial = children(body, "inertial").last();
+        let is_urdf = self.format == Format::Urdf;
+        let mut all = children(self.body(group.head)?, "inertial");
+        // Of several in an MJCF, the last one holds.
+        let inertial = if is_urdf { all.next() } else { all.last() };
         let from_geoms = self.compiler.inertia_from == InertiaFrom::Geoms;
         let by_numbers = !from_geoms && !group.reshaped && !self.compiler.adjusts();
         if let Some(inertial) = inertial.filter(|_| by_numbers)
-            && self.is_alone(group)
+            && self.others(group).is_empty()
         {
-            return self.write_numbers(inertial, group);
+            return if is_urdf {
+                self.write_link_numbers(inertial, group)
+            } else {
+                self.write_numbers(inertial, group)
+            };
         }
         for (link, own) in self.shares(group)? {
-            self.write_whole(link, own)?;
+            if is_urdf {
+                self.write_link(link, own)?;
+            } else {
+                self.write_whole(link, own)?;
+            }
         }
         Ok(())
     }
@@ -296,13 +302,8 @@ impl<'x> Sheet<'x, '_> {
         members
     }
 
-    /// Whether only the head of a group has mass.
-    pub(super) fn is_alone(&self, group: &Group) -> bool {
-        self.others(group).is_empty()
-    }
-
     /// The links of a group whose inertia changes, each with the new one in its frame.
-    pub(super) fn shares(&self, group: &Group) -> Result<Vec<(usize, Inertia)>, Refused> {
+    fn shares(&self, group: &Group) -> Result<Vec<(usize, Inertia)>, Refused> {
         let others = self.others(group);
         let own = others.iter().fold(group.after, |own, (link, pose)| {
             own.with(&negative(self.robot.links[*link].inertia.placed(*pose)))

@@ -144,6 +144,17 @@ impl<'x, 'f> Sheet<'x, 'f> {
             .transpose()
     }
 
+    /// The first number of an attribute.
+    pub(super) fn first(
+        &self,
+        element: Element<'x>,
+        kinds: &str,
+        key: &str,
+    ) -> Result<Option<f64>, Refused> {
+        let all = self.numbers(element, kinds, key)?;
+        Ok(all.and_then(|all| all.first().copied()))
+    }
+
     /// Changes an attribute of an element.
     pub(super) fn set(
         &mut self,

@@ -272,7 +272,8 @@ impl<'x> Sheet<'x, '_> {
         };
         self.set(actuator, "delay", number(delay))?;
         let given = self.first(actuator, ACTUATORS, "nsample")?;
-        if given.is_none_or(|given| given < samples) {
+        let enough = given.is_some_and(|given| given >= samples);
+        if !enough {
             self.set(actuator, "nsample", number(samples))?;
         }
         if !is_near && self.given(actuator, ACTUATORS, "interp").is_none() {

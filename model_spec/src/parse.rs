@@ -99,13 +99,12 @@ impl Reader<'_> {
             .filter(|(at, c)| is_forbidden(*c) && !(*at == 0 && *c == '\u{feff}'))
             .collect();
         for (at, c) in hidden.into_iter().take(5) {
+            let message = format!("the character U+{:04X} is not allowed", u32::from(c));
+            let finding = Diagnostic::error(Code::ForbiddenCharacter, message);
             self.tell(
-                Diagnostic::error(
-                    Code::ForbiddenCharacter,
-                    format!("the character U+{:04X} is not allowed", u32::from(c)),
-                )
-                .at(at..at + c.len_utf8(), "hidden here")
-                .help("remove it"),
+                finding
+                    .at(at..at + c.len_utf8(), "hidden here")
+                    .help("remove it"),
             );
         }
     }

@@ -116,35 +116,17 @@ pub enum Failure {
     },
 }
 
-/// Gives root links without a joint a free joint.
-fn float(robot: &mut model::Robot) {
-    for link in &mut robot.links {
-        if link.parent.is_none() && link.joint.is_none() {
-            let name = link.name.clone();
-            link.joint = Some(model::Joint::without_axis(
-                name,
-                model::Motion::Free,
-                [0.0; 3],
-            ));
-        }
-    }
-}
-
 /// Frees or fixes the roots, as the options ask.
 fn set_base(robot: &mut model::Robot, options: &Options) {
-    if options.floating {
-        float(robot);
-    }
-    if options.grounded {
-        ground(robot);
-    }
-}
-
-/// Makes free joints of root links rigid.
-fn ground(robot: &mut model::Robot) {
+    use model::{Joint, Motion};
     for link in robot.links.iter_mut().filter(|link| link.parent.is_none()) {
-        let joint = link.joint.take();
-        link.joint = joint.filter(|joint| joint.motion != model::Motion::Free);
+        if options.floating && link.joint.is_none() {
+            let joint = Joint::without_axis(link.name.clone(), Motion::Free, [0.0; 3]);
+            link.joint = Some(joint);
+        }
+        if options.grounded {
+            link.joint.take_if(|joint| joint.motion == Motion::Free);
+        }
     }
 }
 
@@ -277,15 +259,8 @@ pub fn import_with(
         return Err(fail(findings.into_inner()));
     }
     let written = spec::write(file, format, &robot, &tree, &equations, options);
-    if let Some(name) = written.unused.first() {
-        let known = written.known.iter().map(String::as_str);
-        let help = did_you_mean(name, known, || {
-            "name links, joints or parameters of the robot".to_owned()
-        });
-        return Err(Failure::Unknown {
-            name: name.clone(),
-            help,
-        });
+    if let Some(unknown) = written.unknown {
+        return Err(unknown);
     }
     if let Err(report) = appell_spec::load("robot.toml", &written.text) {
         refuse(&report, &written.lines, xml::tag(root), &findings);

@@ -61,18 +61,12 @@ impl Equations {
     }
 }
 
-/// Which equation a row belongs to.
-enum Of {
+/// An equation between coordinates.
+#[derive(Clone, Copy)]
+enum Row {
     Coupling(usize),
     /// Connection, pair of points and axis.
     Meeting(usize, usize, usize),
-}
-
-/// An equation between coordinates.
-struct Row {
-    of: Of,
-    /// The preferred dependent coordinate.
-    preferred: Option<usize>,
 }
 
 /// The equations of all couplings and connections. Refuses inconsistent ones.
@@ -81,10 +75,10 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
     let places = Places::new(robot, tree, freedoms);
     let count = robot.couplings.len() + 9 * robot.connections.len();
     if count.saturating_mul(places.freedoms.len()) > MOST_ENTRIES {
-        let most = robot.connections.iter().map(|one| &one.place);
+        let mut most = robot.connections.iter().map(|one| &one.place);
         let place = most
-            .chain(robot.couplings.iter().map(|one| &one.place))
-            .next();
+            .next()
+            .or(robot.couplings.first().map(|one| &one.place));
         let message = format!(
             "{count} equations between {} rates are too many",
             places.freedoms.len()
@@ -95,38 +89,35 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
         return Equations::default();
     }
     let mut equations = Equations::default();
-    let mut rows = Vec::new();
+    let (mut rows, mut preferred) = (Vec::new(), Vec::new());
     for (index, coupling) in robot.couplings.iter().enumerate() {
         equations.couplings.push(None);
-        let preferred = match coupling.follows.terms.as_slice() {
+        // The preferred dependent coordinate.
+        preferred.push(match coupling.follows.terms.as_slice() {
             [(name, _)] => places.column(name),
             _ => None,
-        };
-        let of = Of::Coupling(index);
-        rows.push(Row { of, preferred });
+        });
+        rows.push(Row::Coupling(index));
     }
     for (index, connection) in robot.connections.iter().enumerate() {
         let meetings = places.meetings(connection);
         let each = (0..meetings.len()).flat_map(|meeting| (0..3).map(move |axis| (meeting, axis)));
-        rows.extend(each.map(|(meeting, axis)| Row {
-            of: Of::Meeting(index, meeting, axis),
-            preferred: None,
-        }));
+        rows.extend(each.map(|(meeting, axis)| Row::Meeting(index, meeting, axis)));
         equations.meetings.push((connection.name.clone(), meetings));
     }
     places.refuse_what_stays_open(&rows, findings);
-    let (kept, start) = places.followers(&rows);
+    preferred.resize(rows.len(), None);
+    let (kept, start) = places.followers(&preferred);
     for (row, pivot) in &kept {
-        let (row, follower) = (&rows[*row], places.follower(*pivot));
-        if places.turns(*pivot) {
-            places.refuse(&row.of, follower, findings);
-        }
-        match row.of {
-            Of::Coupling(index) => equations.couplings[index] = Some(follower),
-            Of::Meeting(connection, meeting, axis) => {
-                equations.meetings[connection].1[meeting]
-                    .rows
-                    .push((axis, follower));
+        let follower = places.follower(*pivot);
+        match rows[*row] {
+            Row::Coupling(index) => equations.couplings[index] = Some(follower),
+            Row::Meeting(index, meeting, axis) => {
+                if places.turns(*pivot) {
+                    places.refuse(&robot.connections[index], follower, findings);
+                }
+                let (_, meetings) = &mut equations.meetings[index];
+                meetings[meeting].rows.push((axis, follower));
             }
         }
     }
@@ -222,12 +213,12 @@ impl<'a> Places<'a> {
         let Some((row, off)) = off.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
             return;
         };
-        let (name, place) = match rows[row].of {
-            Of::Coupling(index) => {
+        let (name, place) = match rows[row] {
+            Row::Coupling(index) => {
                 let coupling = &self.robot.couplings[index];
                 (&coupling.name, &coupling.place)
             }
-            Of::Meeting(index, ..) => {
+            Row::Meeting(index, ..) => {
                 let connection = &self.robot.connections[index];
                 (&connection.name, &connection.place)
             }
@@ -372,14 +363,15 @@ impl<'a> Places<'a> {
     /// Their number is the generic rank. Couplings prefer their declared dependent coordinate; otherwise rows and
     /// dependent freedoms are those with the largest pivots at the start, or in the generic configuration if the
     /// rank at the start is smaller.
-    fn followers(&self, rows: &[Row]) -> (Vec<(usize, usize)>, Option<Configuration>) {
-        let weights: Vec<f64> = (0..self.freedoms.len())
-            .map(|column| self.weight(column))
-            .collect();
-        let preferred: Vec<Option<usize>> = rows.iter().map(|row| row.preferred).collect();
+    fn followers(
+        &self,
+        preferred: &[Option<usize>],
+    ) -> (Vec<(usize, usize)>, Option<Configuration>) {
+        let weights = (0..self.freedoms.len()).map(|column| self.weight(column));
+        let weights: Vec<f64> = weights.collect();
         let at = |place: &Configuration| {
             let all = self.linear(place).rows;
-            let kept = eliminated(all.clone(), &preferred, &weights);
+            let kept = eliminated(all.clone(), preferred, &weights);
             let own: Vec<&Vec<f64>> = kept.iter().map(|one| &all[one.row]).collect();
             let pivots: Vec<usize> = kept.iter().map(|one| one.pivot).collect();
             let pivots = matched(&own, &pivots);
@@ -430,22 +422,15 @@ impl<'a> Places<'a> {
     /// Whether a freedom is a rotation that has no angle as its coordinate.
     fn turns(&self, freedom: usize) -> bool {
         let Freedom { link, component } = self.freedoms[freedom];
-        match self.robot.links[link]
-            .joint
-            .as_ref()
-            .map(|joint| joint.motion)
-        {
+        let joint = self.robot.links[link].joint.as_ref();
+        match joint.map(|joint| joint.motion) {
             Some(Motion::Free) => component >= 3,
             Some(Motion::Ball) => true,
             _ => false,
         }
     }
 
-    fn refuse(&self, of: &Of, follower: Follower, findings: &Findings) {
-        let Of::Meeting(connection, ..) = of else {
-            return;
-        };
-        let connection = &self.robot.connections[*connection];
+    fn refuse(&self, connection: &Connection, follower: Follower, findings: &Findings) {
         let joint = &self.tree.bodies[follower.body].joint.name;
         let message = format!(
             "`{}` closes a loop in which the attitude of joint `{joint}` would have to follow",

@@ -32,29 +32,17 @@ pub use corrected::{Amount, Change, Corrected, Number, corrected};
 use defaults::{Defaults, Given};
 use equality::Equality;
 pub(crate) use replicate::expanded;
+use schema::has;
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
 
 /// Sections that are read elsewhere.
-const ELSEWHERE: &[&str] = &[
-    "compiler",
-    "option",
-    "default",
-    "asset",
-    "worldbody",
-    "equality",
-    "tendon",
-    "actuator",
-    "size",
-    "statistic",
-    "visual",
-    "extension",
-    "deformable",
-];
+const ELSEWHERE: &str = "compiler option default asset worldbody equality tendon actuator size statistic visual \
+                         extension deformable";
 /// Elements of a body that are read separately.
-const READ: &[&str] = &["joint", "inertial", "freejoint"];
+const READ: &str = "joint inertial freejoint";
 /// Elements that change the tree, and are not read.
-const NOT_YET: &[&str] = &["replicate", "composite", "flexcomp", "attach"];
+const NOT_YET: &str = "replicate composite flexcomp attach";
 
 /// State that all parts of the reader share.
 pub(crate) struct Reader<'x, 'f> {
@@ -129,8 +117,8 @@ pub(crate) fn read(
     for section in elements(root) {
         match section.tag_name().name() {
             "worldbody" => reader.level(section, ground),
-            name if NOT_YET.contains(&name) => reader.not_yet(section),
-            name if ELSEWHERE.contains(&name) => {}
+            name if has(NOT_YET, name) => reader.not_yet(section),
+            name if has(ELSEWHERE, name) => {}
             name => reader.leave_out_of(name, section),
         }
     }
@@ -301,14 +289,14 @@ impl<'x> Reader<'x, '_> {
                         },
                     );
                 }
-                name if NOT_YET.contains(&name) => self.not_yet(inner),
-                name if READ.contains(&name) && level.parent.is_none() => self.findings.error(
+                name if has(NOT_YET, name) => self.not_yet(inner),
+                name if has(READ, name) && level.parent.is_none() => self.findings.error(
                     Code::NotAllowedHere,
                     tag(inner),
                     format!("the world holds a `{name}`"),
                     "put it inside a `<body>`, together with its geoms",
                 ),
-                name if READ.contains(&name) => {}
+                name if has(READ, name) => {}
                 name => self.leave_out(name.to_owned(), inner),
             }
         }

@@ -90,8 +90,8 @@ impl<'a> Patterns<'a> {
         patterns.any(|pattern| all.iter().any(|name| is(pattern, name)))
     }
 
-    /// Names without an element, and patterns without an attribute.
-    pub(crate) fn unknown(&self) -> Vec<String> {
+    /// The first name without an element, or pattern without an attribute.
+    pub(crate) fn unknown(&self) -> Option<&String> {
         let is_known = |pattern: &&String| {
             if pattern.contains('*') {
                 ends_in_attribute(pattern) || self.known.iter().any(|name| fits(pattern, name))
@@ -99,8 +99,7 @@ impl<'a> Patterns<'a> {
                 self.known.contains(*pattern)
             }
         };
-        let unknown = self.all.iter().filter(|pattern| !is_known(pattern));
-        unknown.cloned().collect()
+        self.all.iter().find(|pattern| !is_known(pattern))
     }
 }
 

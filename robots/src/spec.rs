@@ -12,6 +12,7 @@ mod units;
 
 use appell_spec::limits::{MAX_ITEMS, MAX_SENTENCE};
 
+use crate::Failure;
 use crate::assembly::Configuration;
 use crate::dictionary::{BodyName, Dictionary, JointName};
 use crate::format::Format;
@@ -71,13 +72,13 @@ pub(crate) struct Writer<'a> {
     outputs: Section,
 }
 
-/// A spec, and the selected names that matched no number.
+/// A spec, and how it came about.
 pub(crate) struct Written {
     pub(crate) text: String,
     /// Where lines begin, and where in the file of the robot they come from.
     pub(crate) lines: Vec<(usize, Span)>,
-    pub(crate) unused: Vec<String>,
-    pub(crate) known: Vec<String>,
+    /// The first selected name that matched no number.
+    pub(crate) unknown: Option<Failure>,
     pub(crate) dictionary: Dictionary,
 }
 
@@ -135,8 +136,7 @@ pub(crate) fn write(
     Written {
         text,
         lines,
-        unused: writer.numbers.unused(),
-        known: writer.numbers.known().iter().cloned().collect(),
+        unknown: writer.numbers.unknown(),
         dictionary: writer.dictionary,
     }
 }

@@ -275,14 +275,14 @@ impl Reader<'_> {
         } else {
             (b, a)
         };
+        let message = format!("`{}` has both {} and {}", owner.name, first.0, second.0);
+        let help = format!("keep either {} or {}", first.0, second.0);
+        let finding = Diagnostic::error(Code::ConflictingKeys, message);
         self.tell(
-            Diagnostic::error(
-                Code::ConflictingKeys,
-                format!("`{}` has both {} and {}", owner.name, first.0, second.0),
-            )
-            .at(second.1, "said again")
-            .at(first.1, "said here")
-            .help(format!("keep either {} or {}", first.0, second.0)),
+            finding
+                .at(second.1, "said again")
+                .at(first.1, "said here")
+                .help(help),
         );
     }
 

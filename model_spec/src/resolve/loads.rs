@@ -153,14 +153,13 @@ impl Resolver<'_> {
     }
 
     fn connected_to_itself(&mut self, name: &str, span: Span, first: Span) {
+        let message = format!("`{name}` acts on itself, which changes nothing");
+        let finding = Diagnostic::error(Code::SelfReaction, message);
         self.tell(
-            Diagnostic::error(
-                Code::SelfReaction,
-                format!("`{name}` acts on itself, which changes nothing"),
-            )
-            .at(span, "the same again")
-            .at(first, "here")
-            .help("name two different items"),
+            finding
+                .at(span, "the same again")
+                .at(first, "here")
+                .help("name two different items"),
         );
     }
 

@@ -26,14 +26,10 @@ impl Resolver<'_> {
         }
         for (name, id) in names.iter().zip(taken) {
             if self.in_quaternions.contains(&id) {
-                self.tell(
-                    Diagnostic::error(
-                        Code::ConflictingKeys,
-                        format!("`{}` is a component of a quaternion twice", name.value),
-                    )
-                    .at(name.span.clone(), "here again")
-                    .help("each quaternion has four coordinates of its own; frames that turn alike have all four in common"),
-                );
+                let message = format!("`{}` is a component of a quaternion twice", name.value);
+                let help = "each quaternion has four coordinates of its own; frames that turn alike have all four in common";
+                let finding = Diagnostic::error(Code::ConflictingKeys, message);
+                self.tell(finding.at(name.span.clone(), "here again").help(help));
                 return None;
             }
             let dimension = self.names.get(name.value.as_str())?.dimension;

@@ -41,16 +41,8 @@ const COMPENSATION: &str =
 const SHARED: &str = "the sum of the forces of several actuators on the tendon is not bounded";
 
 /// Attributes that are read together with actuators.
-const READ: &[&str] = &[
-    "joint/actuatorfrcrange",
-    "joint/actuatorfrclimited",
-    "fixed/actuatorfrcrange",
-    "fixed/actuatorfrclimited",
-    "tendon/actuatorfrcrange",
-    "tendon/actuatorfrclimited",
-    "flag/actuation",
-    "option/actuatorgroupdisable",
-];
+const READ: &str = "joint/actuatorfrcrange joint/actuatorfrclimited fixed/actuatorfrcrange fixed/actuatorfrclimited \
+                    tendon/actuatorfrcrange tendon/actuatorfrclimited flag/actuation option/actuatorgroupdisable";
 
 impl<'x> Reader<'x, '_> {
     /// Bounds, where an attribute gives them and another one, or the order of the two, says that they hold.
@@ -88,16 +80,9 @@ impl<'x> Reader<'x, '_> {
                 .map_or(0.0, |one| one * gear * gear);
             let damping = given.polynomial("damping").map(|one| one * gear * gear);
             // Of several transmissions, the last one holds.
-            let ways = [
-                "joint",
-                "jointinparent",
-                "tendon",
-                "cranksite",
-                "site",
-                "body",
-            ];
-            let given = ways.iter().rev();
-            let way = given.copied().find(|key| element.attribute(*key).is_some());
+            let ways = "body site cranksite tendon jointinparent joint";
+            let mut ways = ways.split_ascii_whitespace();
+            let way = ways.find(|key| element.attribute(*key).is_some());
             let target = way.and_then(|key| element.attribute(key));
             let link = target.filter(|_| matches!(way, Some("joint" | "jointinparent")));
             let link = link.and_then(|name| self.joint_links.get(name).copied());
@@ -136,8 +121,7 @@ impl<'x> Reader<'x, '_> {
             return None;
         }
         // What these say is read, except of spatial tendons.
-        self.left_out
-            .retain(|one| !READ.contains(&one.what.as_str()));
+        self.left_out.retain(|one| !has(READ, &one.what));
         for tendon in tendons {
             let on = On::Tendon(tendon.name.clone());
             let count = drives.iter().filter(|drive| drive.on == on).count();

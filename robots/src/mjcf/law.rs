@@ -7,14 +7,7 @@ use super::defaults::Defaults;
 use super::schema::ACTUATORS;
 
 /// What makes a `dcmotor` another one than a gain and a back-EMF, and the words with which it does not.
-const NO_MERE_MOTOR: &[&str] = &[
-    "cogging",
-    "controller",
-    "inductance",
-    "input",
-    "lugre",
-    "thermal",
-];
+const NO_MERE_MOTOR: &str = "cogging controller inductance input lugre thermal";
 
 /// Force = gain · command + bias; of either a constant, a factor of the length, and one of its rate.
 #[derive(Debug, Clone)]
@@ -190,12 +183,12 @@ impl Law {
                 some("motorconst", &mut self.motor.constants);
                 some("nominal", &mut self.motor.nominal);
                 some("saturation", &mut self.motor.saturation);
-                let acts = |key: &&str| {
-                    let given = element.attribute(*key).unwrap_or_default();
+                let acts = |key: &str| {
+                    let given = element.attribute(key).unwrap_or_default();
                     let mut words = given.split_ascii_whitespace();
                     words.any(|word| word != "voltage" && word.parse() != Ok(0.0))
                 };
-                self.other = NO_MERE_MOTOR.iter().any(acts);
+                self.other = NO_MERE_MOTOR.split_ascii_whitespace().any(acts);
                 self.types("dcmotor", "none", "none");
             }
             _ => {

@@ -12,17 +12,7 @@ use super::change::{Amount, Refused, refused};
 use super::sheet::{Sheet, read};
 
 /// Attributes of shortcuts that `general` does not have.
-const OF_SHORTCUTS: [&str; 9] = [
-    "kp",
-    "kv",
-    "dampratio",
-    "timeconst",
-    "inheritrange",
-    "area",
-    "diameter",
-    "bias",
-    "input",
-];
+const OF_SHORTCUTS: &str = "kp kv dampratio timeconst inheritrange area diameter bias input";
 /// Numbers of an affine bias: constant, factor of the length, factor of the rate.
 const AFFINE: usize = 3;
 /// How far a delay may be rounded to whole steps, relative to it.
@@ -453,7 +443,7 @@ impl<'x> Sheet<'x, '_> {
         let converted = !actuator.has_tag_name("general");
         if converted {
             self.write_inherited_range(actuator)?;
-            for key in OF_SHORTCUTS {
+            for key in OF_SHORTCUTS.split_ascii_whitespace() {
                 self.remove(actuator, key)?;
             }
             self.rename(actuator, "general")?;

@@ -80,11 +80,7 @@ pub enum ValueAst {
     Components(Box<[ExprAst; 3]>),
     /// Nine expressions, row by row.
     Matrix(Box<[[ExprAst; 3]; 3]>),
-    /// Two names.
-    Pair([Spanned<String>; 2]),
-    /// Four names.
-    Four(Box<[Spanned<String>; 4]>),
-    /// Names that are defined here.
+    /// Several names.
     Names(Vec<Spanned<String>>),
     /// A list of tables.
     Tables(Vec<ItemAst>),
@@ -147,74 +143,123 @@ impl ItemAst {
         self.entries.iter().find(|e| e.key.name == key)
     }
 
+    /// The value under a key.
+    pub fn value(&self, key: &str) -> Option<&ValueAst> {
+        self.entry(key).map(|entry| &entry.value)
+    }
+
     /// The meaning of the word under a key.
     pub fn word(&self, key: &str) -> Option<Sense> {
-        self.entry(key).and_then(|e| match &e.value {
+        match self.value(key)? {
             ValueAst::Word(meaning) => Some(*meaning),
             _ => None,
-        })
+        }
     }
 
     /// Whether the flag under a key is set.
     pub fn flag(&self, key: &str) -> bool {
-        let value = self.entry(key).map(|e| &e.value);
-        matches!(value, Some(ValueAst::Flag(true)))
+        matches!(self.value(key), Some(ValueAst::Flag(true)))
     }
 
     /// The text under a key: a sentence or a name.
     pub fn text(&self, key: &str) -> Option<Spanned<&str>> {
-        self.entry(key).and_then(|e| match &e.value {
-            ValueAst::Text(text) => Some(Spanned {
-                value: text.as_str(),
-                span: e.span.clone(),
-            }),
+        match self.value(key)? {
+            ValueAst::Text(text) => self.spanned(key, text.as_str()),
             _ => None,
-        })
+        }
     }
 
     /// The number under a key.
     pub fn number(&self, key: &str) -> Option<Spanned<&BigRational>> {
-        self.entry(key).and_then(|e| match &e.value {
-            ValueAst::Number(number) => Some(Spanned {
-                value: number,
-                span: e.span.clone(),
-            }),
+        match self.value(key)? {
+            ValueAst::Number(number) => self.spanned(key, number),
             _ => None,
-        })
+        }
     }
 
     /// The numbers under a key.
     pub fn numbers(&self, key: &str) -> Option<&[Spanned<BigRational>]> {
-        self.entry(key).and_then(|e| match &e.value {
-            ValueAst::Numbers(numbers) => Some(numbers.as_slice()),
+        match self.value(key)? {
+            ValueAst::Numbers(numbers) => Some(numbers),
             _ => None,
-        })
+        }
+    }
+
+    /// The names under a key.
+    pub fn names(&self, key: &str) -> Option<&[Spanned<String>]> {
+        match self.value(key)? {
+            ValueAst::Names(names) => Some(names),
+            _ => None,
+        }
     }
 
     /// The unit under a key.
     pub fn unit(&self, key: &str) -> Option<Spanned<&Unit>> {
-        self.entry(key).and_then(|e| match &e.value {
-            ValueAst::Unit(unit) => Some(Spanned {
-                value: unit,
-                span: e.span.clone(),
-            }),
+        match self.value(key)? {
+            ValueAst::Unit(unit) => self.spanned(key, unit),
             _ => None,
-        })
+        }
     }
 
     /// The expression under a key.
     pub fn expression(&self, key: &str) -> Option<&ExprAst> {
-        self.entry(key).and_then(|e| match &e.value {
+        match self.value(key)? {
             ValueAst::Expression(expression) => Some(expression),
             _ => None,
-        })
+        }
     }
 
     /// The components under a key.
     pub fn components(&self, key: &str) -> Option<&[ExprAst; 3]> {
-        self.entry(key).and_then(|e| match &e.value {
-            ValueAst::Components(components) => Some(components.as_ref()),
+        match self.value(key)? {
+            ValueAst::Components(components) => Some(components),
             _ => None,
-        })
+        }
+    }
+
+    /// A value with the position of that under a key.
+    fn spanned<T>(&self, key: &str, value: T) -> Option<Spanned<T>> {
+        let span = self.entry(key)?.span.clone();
+        Some(Spanned { value, span })
+    }
+}
+
+impl ValueAst {
+    /// The expressions of which it consists, those of tables aside.
+    pub fn expressions(&self) -> Vec<&ExprAst> {
+        match self {
+            Self::Expression(one) => vec![one],
+            Self::Components(three) => three.iter().collect(),
+            Self::Matrix(nine) => nine.iter().flatten().collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The tables of which it consists.
+    pub fn tables(&self) -> &[ItemAst] {
+        match self {
+            Self::Tables(tables) => tables,
+            Self::Table(table) => std::slice::from_ref(table),
+            _ => &[],
+        }
+    }
+}
+
+impl ExprAst {
+    /// The expressions of which it consists, from left to right.
+    pub fn parts(&self) -> Vec<&Self> {
+        match &self.kind {
+            ExprAstKind::Number(..)
+            | ExprAstKind::Name(_)
+            | ExprAstKind::Rate(_)
+            | ExprAstKind::Named(..)
+            | ExprAstKind::Broken => Vec::new(),
+            ExprAstKind::Negate(a) => vec![a],
+            ExprAstKind::Binary(_, a, b) => vec![a, b],
+            ExprAstKind::Call(_, arguments) => arguments.iter().collect(),
+            ExprAstKind::Choice {
+                compared, branches, ..
+            } => compared.iter().chain(branches.iter()).collect(),
+        }
     }
 }

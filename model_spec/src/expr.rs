@@ -1,5 +1,36 @@
 //! Resolved expressions: trees whose names have been replaced by references.
 
+/// Words of the language: an enum, and a row for each with its name in a spec and something else.
+macro_rules! words {
+    (
+        $(#[$about_all:meta])*
+        $words:ident, $other:ty;
+        $($(#[$about:meta])* $variant:ident $name:literal $more:literal)*
+    ) => {
+        $(#[$about_all])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum $words {
+            $($(#[$about])* $variant,)*
+        }
+
+        impl $words {
+            /// Each with its name and the rest of its row, in the order of the enum.
+            pub const ALL: &'static [(Self, &'static str, $other)] =
+                &[$((Self::$variant, $name, $more),)*];
+
+            /// That of a name.
+            pub fn from_name(name: &str) -> Option<Self> {
+                Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+            }
+
+            /// Name in a spec.
+            pub fn name(self) -> &'static str {
+                Self::ALL[self as usize].1
+            }
+        }
+    };
+}
+
 mod named;
 mod value;
 
@@ -100,84 +131,42 @@ pub enum Relation {
     GreaterOrEqual,
 }
 
-/// The functions of the language.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "each variant is the function of that name")]
-pub enum Function {
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Atan2,
-    Sinh,
-    Cosh,
-    Tanh,
-    Exp,
-    Ln,
-    Sqrt,
-    Abs,
-    Sign,
-    Hypot,
-    Min,
-    Max,
+words! {
+    /// The functions of the language, with their numbers of arguments.
+    #[expect(missing_docs, reason = "each variant is the function of that name")]
+    Function, usize;
+    Sin "sin" 1
+    Cos "cos" 1
+    Tan "tan" 1
+    Asin "asin" 1
+    Acos "acos" 1
+    Atan "atan" 1
+    Atan2 "atan2" 2
+    Sinh "sinh" 1
+    Cosh "cosh" 1
+    Tanh "tanh" 1
+    Exp "exp" 1
+    Ln "ln" 1
+    Sqrt "sqrt" 1
+    Abs "abs" 1
+    Sign "sign" 1
+    Hypot "hypot" 2
+    Min "min" 2
+    Max "max" 2
     /// `smooth_abs(a, w) = sqrt(a² + w²)`: |a| rounded over the width `w`.
-    SmoothAbs,
+    SmoothAbs "smooth_abs" 2
     /// `smooth_sign(a, w) = tanh(a / w)`: the sign of `a`, rounded over the width `w`.
-    SmoothSign,
+    SmoothSign "smooth_sign" 2
     /// `smooth_min(a, b, w)`: the smaller of two, rounded over the width `w`.
-    SmoothMin,
+    SmoothMin "smooth_min" 3
     /// `smooth_max(a, b, w)`: the larger of two, rounded over the width `w`.
-    SmoothMax,
+    SmoothMax "smooth_max" 3
 }
 
 impl Function {
-    /// Every function with its name and number of arguments.
-    pub const ALL: &'static [(Self, &'static str, usize)] = &[
-        (Self::Sin, "sin", 1),
-        (Self::Cos, "cos", 1),
-        (Self::Tan, "tan", 1),
-        (Self::Asin, "asin", 1),
-        (Self::Acos, "acos", 1),
-        (Self::Atan, "atan", 1),
-        (Self::Atan2, "atan2", 2),
-        (Self::Sinh, "sinh", 1),
-        (Self::Cosh, "cosh", 1),
-        (Self::Tanh, "tanh", 1),
-        (Self::Exp, "exp", 1),
-        (Self::Ln, "ln", 1),
-        (Self::Sqrt, "sqrt", 1),
-        (Self::Abs, "abs", 1),
-        (Self::Sign, "sign", 1),
-        (Self::Hypot, "hypot", 2),
-        (Self::Min, "min", 2),
-        (Self::Max, "max", 2),
-        (Self::SmoothAbs, "smooth_abs", 2),
-        (Self::SmoothSign, "smooth_sign", 2),
-        (Self::SmoothMin, "smooth_min", 3),
-        (Self::SmoothMax, "smooth_max", 3),
-    ];
-
-    /// The function of a name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
-    }
-
-    /// Name in a spec.
-    pub fn name(self) -> &'static str {
-        Self::ALL
-            .iter()
-            .find(|row| row.0 == self)
-            .map_or("", |row| row.1)
-    }
-
     /// Number of arguments.
     pub fn arity(self) -> usize {
-        Self::ALL
-            .iter()
-            .find(|row| row.0 == self)
-            .map_or(0, |row| row.2)
+        Self::ALL[self as usize].2
     }
 }
 
@@ -215,23 +204,26 @@ impl Expr {
         }
     }
 
-    /// Visits every quantity of the expression, from left to right.
-    pub fn visit(&self, seen: &mut dyn FnMut(Quantity)) {
+    /// The expressions of which it consists, from left to right.
+    pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
-            ExprKind::Number(_) => {}
-            ExprKind::Quantity(quantity) => seen(*quantity),
-            ExprKind::Negate(a) => a.visit(seen),
-            ExprKind::Binary(_, a, b) => {
-                a.visit(seen);
-                b.visit(seen);
-            }
-            ExprKind::Call(_, arguments) => arguments.iter().for_each(|a| a.visit(seen)),
+            ExprKind::Number(_) | ExprKind::Quantity(_) => Vec::new(),
+            ExprKind::Negate(a) => vec![a],
+            ExprKind::Binary(_, a, b) => vec![a, b],
+            ExprKind::Call(_, arguments) => arguments.iter().collect(),
             ExprKind::Choice {
                 compared, branches, ..
-            } => compared
-                .iter()
-                .chain(branches.iter())
-                .for_each(|a| a.visit(seen)),
+            } => compared.iter().chain(branches.iter()).collect(),
+        }
+    }
+
+    /// Visits every quantity of the expression, from left to right.
+    pub fn visit(&self, seen: &mut dyn FnMut(Quantity)) {
+        if let ExprKind::Quantity(quantity) = &self.kind {
+            seen(*quantity);
+        }
+        for part in self.parts() {
+            part.visit(seen);
         }
     }
 }

@@ -20,8 +20,6 @@ mod places;
 mod quantities;
 mod written;
 
-use std::collections::BTreeSet;
-
 use crate::ast::{Entry, ItemAst, SectionAst, SpecAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::edit::EditError;
@@ -31,7 +29,7 @@ use crate::limits::MAX_ITEMS;
 use crate::occurrences::Namespace;
 use crate::parse;
 
-use made::{Made, Places};
+use made::{Known, Made};
 use piece::Piece;
 
 /// The section of joints.
@@ -165,35 +163,6 @@ fn shows(joint: &str) -> String {
     format!(
         "it is in the expansion of the joint `{joint}`, which `appell derive` writes out as a spec"
     )
-}
-
-/// The names of frames and points.
-struct Known<'a> {
-    frames: BTreeSet<&'a str>,
-    points: BTreeSet<&'a str>,
-}
-
-impl<'a> Known<'a> {
-    fn new(ast: &'a SpecAst) -> Self {
-        let names = |section: &str| -> BTreeSet<&'a str> {
-            let own = ast.items(section).iter().chain(ast.items(SECTION));
-            own.map(|item| item.name.value.as_str()).collect()
-        };
-        Self {
-            frames: names("frames"),
-            points: names("points"),
-        }
-    }
-}
-
-impl Places for Known<'_> {
-    fn has_frame(&self, name: &str) -> bool {
-        self.frames.contains(name)
-    }
-
-    fn has_point(&self, name: &str) -> bool {
-        self.points.contains(name)
-    }
 }
 
 impl Expansion {

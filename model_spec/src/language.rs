@@ -2,15 +2,14 @@
 //!
 //! The parser, the editor schema and the tests of the manual all read this one table.
 
-mod joints;
 mod keys;
 mod kinds;
 mod sections;
 
 use crate::mechanism::{Axis, Interpolation};
 
-pub use keys::AXES;
-pub use sections::{INTERPOLATIONS, SECTIONS};
+pub use keys::{AXES, INTERPOLATIONS};
+pub use sections::SECTIONS;
 
 /// A section of a spec.
 #[derive(Debug)]

@@ -152,45 +152,27 @@ impl Finder<'_> {
                 Form::NewName => self.see(Namespace::Quantity, name, &entry.span, true),
                 _ => {}
             },
-            ValueAst::Pair(names) => {
-                if let Form::Two(target) = entry.key.form {
-                    for name in names {
-                        self.see(target.into(), &name.value, &name.span, false);
-                    }
+            ValueAst::Names(names) => {
+                let namespace = match entry.key.form {
+                    Form::Two(target) => target.into(),
+                    _ => Namespace::Quantity,
+                };
+                let defines = matches!(entry.key.form, Form::NewNames(_));
+                for name in names {
+                    self.see(namespace, &name.value, &name.span, defines);
                 }
             }
-            ValueAst::Four(coordinates) => {
-                for name in coordinates.iter() {
-                    self.see(Namespace::Quantity, &name.value, &name.span, false);
-                }
-            }
-            ValueAst::Expression(expression) => self.expression(expression),
-            ValueAst::Components(components) => self.expressions(components.iter()),
-            ValueAst::Matrix(rows) => self.expressions(rows.iter().flatten()),
-            ValueAst::Tables(tables) => {
+            value => {
+                self.expressions(value.expressions());
                 let path = self.within.clone();
-                for table in tables {
+                for table in value.tables() {
                     self.item(&path, table);
                 }
             }
-            ValueAst::Table(table) => {
-                let path = self.within.clone();
-                self.item(&path, table);
-            }
-            ValueAst::Names(names) => {
-                for name in names {
-                    self.see(Namespace::Quantity, &name.value, &name.span, true);
-                }
-            }
-            ValueAst::Word(_)
-            | ValueAst::Flag(_)
-            | ValueAst::Number(_)
-            | ValueAst::Numbers(_)
-            | ValueAst::Unit(_) => {}
         }
     }
 
-    fn expressions<'e>(&mut self, all: impl Iterator<Item = &'e ExprAst>) {
+    fn expressions(&mut self, all: Vec<&ExprAst>) {
         for expression in all {
             self.expression(expression);
         }
@@ -198,7 +180,6 @@ impl Finder<'_> {
 
     fn expression(&mut self, expression: &ExprAst) {
         match &expression.kind {
-            ExprAstKind::Number(..) | ExprAstKind::Broken => {}
             ExprAstKind::Name(name) => {
                 if !matches!(name.as_str(), "t" | "pi") {
                     self.see(Namespace::Quantity, name, &expression.span, false);
@@ -208,12 +189,7 @@ impl Finder<'_> {
                 self.see(Namespace::Quantity, &name.value, &name.span, false);
             }
             ExprAstKind::Named(word, names) => self.named(*word, names),
-            ExprAstKind::Negate(a) => self.expression(a),
-            ExprAstKind::Binary(_, a, b) => self.expressions([a.as_ref(), b].into_iter()),
-            ExprAstKind::Call(_, arguments) => self.expressions(arguments.iter()),
-            ExprAstKind::Choice {
-                compared, branches, ..
-            } => self.expressions(compared.iter().chain(branches.iter())),
+            _ => self.expressions(expression.parts()),
         }
     }
 

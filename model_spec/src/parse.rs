@@ -99,13 +99,12 @@ impl Reader<'_> {
             .filter(|(at, c)| is_forbidden(*c) && !(*at == 0 && *c == '\u{feff}'))
             .collect();
         for (at, c) in hidden.into_iter().take(5) {
+            let message = format!("the character U+{:04X} is not allowed", u32::from(c));
+            let finding = Diagnostic::error(Code::ForbiddenCharacter, message);
             self.tell(
-                Diagnostic::error(
-                    Code::ForbiddenCharacter,
-                    format!("the character U+{:04X} is not allowed", u32::from(c)),
-                )
-                .at(at..at + c.len_utf8(), "hidden here")
-                .help("remove it"),
+                finding
+                    .at(at..at + c.len_utf8(), "hidden here")
+                    .help("remove it"),
             );
         }
     }
@@ -191,14 +190,8 @@ impl Reader<'_> {
             |similar| suggest::meant(&format!("[{similar}]")),
         );
         self.incomplete = true;
-        self.tell(
-            Diagnostic::error(
-                Code::UnknownSection,
-                format!("unknown section `{}`", shown(name)),
-            )
-            .at(at, "")
-            .help(help),
-        );
+        let message = format!("unknown section `{}`", shown(name));
+        self.error(Code::UnknownSection, at, message, help);
     }
 
     fn missing_sections(&mut self, found: &[SectionAst]) {
@@ -220,14 +213,9 @@ impl Reader<'_> {
                 } else {
                     "missing"
                 };
-                self.tell(
-                    Diagnostic::error(
-                        Code::MissingSection,
-                        format!("the section `[{}]` is {state}", section.name),
-                    )
-                    .at(at, "")
-                    .help(phrase(section.about)),
-                );
+                let message = format!("the section `[{}]` is {state}", section.name);
+                let help = phrase(section.about);
+                self.error(Code::MissingSection, at, message, help);
             }
         }
     }

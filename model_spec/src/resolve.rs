@@ -107,14 +107,10 @@ impl Resolver<'_> {
             .to_f64()
             .filter(|step| step.is_finite() && *step > 0.0);
         if seconds.is_none() {
-            self.tell(
-                Diagnostic::error(
-                    Code::NotPhysical,
-                    "the longest step is not positive".to_owned(),
-                )
-                .at(step.span.clone(), "in seconds")
-                .help("omit it unless the equations are stiff"),
-            );
+            let message = "the longest step is not positive".to_owned();
+            let help = "omit it unless the equations are stiff";
+            let finding = Diagnostic::error(Code::NotPhysical, message);
+            self.tell(finding.at(step.span.clone(), "in seconds").help(help));
         }
         seconds
     }

@@ -1,7 +1,7 @@
 //! Joint positions, and the nearest ones that satisfy the constraints, by the Gauss–Newton method.
 
 use crate::elimination::largest;
-use crate::kinematics::{Freedom, poses};
+use crate::kinematics::Freedom;
 use crate::model::{Link, Motion};
 use crate::rotation::{Pose, Rotation, Vector, add, minus};
 
@@ -48,8 +48,15 @@ impl Configuration {
         }
     }
 
+    /// Poses of all links.
     pub(crate) fn poses(&self, links: &[Link]) -> Vec<Pose> {
-        poses(links, |link| self.ways[link], &self.turned)
+        let mut poses: Vec<Pose> = Vec::with_capacity(links.len());
+        for (index, link) in links.iter().enumerate() {
+            let on = link.parent.map_or(Pose::IDENTITY, |parent| poses[parent]);
+            let within = link.moved(self.ways[index]).then(self.turned[index]);
+            poses.push(on.then(within));
+        }
+        poses
     }
 
     /// Displaces each freedom by an amount.

@@ -1,5 +1,6 @@
 //! Mass, centre of mass and inertia: rotated, shifted, combined.
 
+use crate::elimination::largest;
 use crate::letters::plain;
 use crate::rotation::{Pose, Rotation, Vector, add, cross, dot, minus, scaled};
 
@@ -73,29 +74,10 @@ pub(crate) fn turned(rotation: Rotation, tensor: Tensor) -> Tensor {
     without_rounding(PLACES.map(entry))
 }
 
-fn without_rounding(tensor: Tensor) -> Tensor {
-    let largest = tensor.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
-    tensor.map(|entry| {
-        if entry.abs() <= ROUNDING * largest {
-            0.0
-        } else {
-            entry
-        }
-    })
-}
-
-/// A position whose components that vanish up to rounding are zero.
-pub(crate) fn position_without_rounding(position: Vector) -> Vector {
-    let largest = position
-        .iter()
-        .fold(0.0_f64, |most, one| most.max(one.abs()));
-    position.map(|entry| {
-        if entry.abs() <= ROUNDING * largest {
-            0.0
-        } else {
-            entry
-        }
-    })
+/// Numbers of which those that vanish up to rounding, compared with the largest one, are zero.
+pub(crate) fn without_rounding<const N: usize>(all: [f64; N]) -> [f64; N] {
+    let bound = ROUNDING * largest(&all);
+    all.map(|entry| if entry.abs() <= bound { 0.0 } else { entry })
 }
 
 /// The tensor of a mass at a distance from the point about which it is taken.
@@ -138,7 +120,7 @@ impl Inertia {
     pub(crate) fn placed(&self, pose: Pose) -> Self {
         Self {
             mass: self.mass,
-            centre: position_without_rounding(pose.of(self.centre)),
+            centre: without_rounding(pose.of(self.centre)),
             tensor: turned(pose.rotation, self.tensor),
         }
     }
@@ -159,7 +141,7 @@ impl Inertia {
                 scaled(self.centre, self.mass),
                 scaled(other.centre, other.mass),
             );
-            position_without_rounding(scaled(moment, 1.0 / mass))
+            without_rounding(scaled(moment, 1.0 / mass))
         };
         let about = |body: &Self| sum(body.tensor, of_point(body.mass, minus(body.centre, centre)));
         Self {

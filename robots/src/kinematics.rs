@@ -22,6 +22,13 @@ impl Freedom {
         joints.flat_map(each).collect()
     }
 
+    /// Partial rate of a sum of coordinates, given by joints with their factors.
+    pub(crate) fn rate(self, links: &[Link], terms: &[(String, f64)]) -> f64 {
+        let joint = links[self.link].joint.as_ref();
+        let own = |(name, _): &&(String, f64)| joint.is_some_and(|joint| joint.name == *name);
+        terms.iter().filter(own).map(|(_, factor)| factor).sum()
+    }
+
     /// Partial velocity of the link and its descendants.
     pub(crate) fn twist(self, links: &[Link], poses: &[Pose]) -> Twist {
         let pose = poses[self.link];
@@ -58,17 +65,6 @@ impl Twist {
     pub(crate) fn at(self, place: Vector) -> Vector {
         add(self.shift, cross(self.turn, place))
     }
-}
-
-/// Poses of all links for displacements from the drawn configuration: numbers for joints with an axis, else poses.
-pub(crate) fn poses(links: &[Link], moved: impl Fn(usize) -> f64, turned: &[Pose]) -> Vec<Pose> {
-    let mut poses: Vec<Pose> = Vec::with_capacity(links.len());
-    for (index, link) in links.iter().enumerate() {
-        let on = link.parent.map_or(Pose::IDENTITY, |parent| poses[parent]);
-        let within = link.moved(moved(index)).then(turned[index]);
-        poses.push(on.then(within));
-    }
-    poses
 }
 
 impl Link {

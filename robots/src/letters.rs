@@ -2,6 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use appell_spec::did_you_mean;
+
+use crate::Failure;
 use crate::dictionary::Entry;
 use crate::names::Names;
 use crate::patterns::{self, Patterns};
@@ -183,25 +186,21 @@ impl<'a> Numbers<'a> {
         Some(name)
     }
 
-    /// Names that matched nothing.
-    pub(crate) fn unused(&self) -> Vec<&str> {
-        match self.letters {
-            Letters::Matching(_) => self.patterns.unknown(),
+    /// The first chosen name that matched nothing, with one that would have matched.
+    pub(crate) fn unknown(&self) -> Option<Failure> {
+        let (name, known) = match self.letters {
+            Letters::Matching(_) => (self.patterns.unknown()?, &self.patterns.known),
             Letters::Of(chosen) => {
-                let unused = chosen.iter().filter(|one| !self.used.contains(*one));
-                unused.map(String::as_str).collect()
+                let mut unused = chosen.iter().filter(|one| !self.used.contains(*one));
+                (unused.next()?, &self.known)
             }
-            _ => Vec::new(),
-        }
-    }
-
-    /// Names that would have matched.
-    pub(crate) fn known(&self) -> impl Iterator<Item = &str> {
-        let known = match self.letters {
-            Letters::Matching(_) => self.patterns.known(),
-            _ => &self.known,
+            _ => return None,
         };
-        known.iter().map(String::as_str)
+        let otherwise = || "name links, joints or parameters of the robot".to_owned();
+        Some(Failure::Unknown {
+            name: name.clone(),
+            help: did_you_mean(name, known.iter().map(String::as_str), otherwise),
+        })
     }
 }
 

@@ -59,7 +59,7 @@ pub use format::Format;
 pub use includes::MAX_FILE;
 pub use letters::Letters;
 pub use lock::Lock;
-pub use mjcf::{Amount, Change, Corrected, JointNumber, corrected};
+pub use mjcf::{Amount, Change, Corrected, Number, corrected};
 pub use options::Options;
 pub use snap::SNAP;
 pub use without::Without;
@@ -116,35 +116,17 @@ pub enum Failure {
     },
 }
 
-/// Gives root links without a joint a free joint.
-fn float(robot: &mut model::Robot) {
-    for link in &mut robot.links {
-        if link.parent.is_none() && link.joint.is_none() {
-            let name = link.name.clone();
-            link.joint = Some(model::Joint::without_axis(
-                name,
-                model::Motion::Free,
-                [0.0; 3],
-            ));
-        }
-    }
-}
-
 /// Frees or fixes the roots, as the options ask.
 fn set_base(robot: &mut model::Robot, options: &Options) {
-    if options.floating {
-        float(robot);
-    }
-    if options.grounded {
-        ground(robot);
-    }
-}
-
-/// Makes free joints of root links rigid.
-fn ground(robot: &mut model::Robot) {
+    use model::{Joint, Motion};
     for link in robot.links.iter_mut().filter(|link| link.parent.is_none()) {
-        let joint = link.joint.take();
-        link.joint = joint.filter(|joint| joint.motion != model::Motion::Free);
+        if options.floating && link.joint.is_none() {
+            let joint = Joint::without_axis(link.name.clone(), Motion::Free, [0.0; 3]);
+            link.joint = Some(joint);
+        }
+        if options.grounded {
+            link.joint.take_if(|joint| joint.motion == Motion::Free);
+        }
     }
 }
 
@@ -261,21 +243,15 @@ pub fn import_with(
     let tree = tree::merged(&robot.links, &findings);
     if tree.bodies.is_empty() && !findings.has_errors() {
         let help = "joints are revolute, continuous, prismatic, planar or floating (URDF), hinge, slide, ball or free (MJCF)";
-        findings.error(
-            Code::MissingSection,
-            xml::tag(root),
-            "the robot has no joint that moves",
-            help,
-        );
+        let message = "the robot has no joint that moves";
+        findings.error(Code::MissingSection, xml::tag(root), message, help);
     }
     if tree.bodies.len() > MAX_ITEMS {
         let count = tree.bodies.len();
-        findings.error(
-            Code::LimitExceeded,
-            xml::tag(root),
-            format!("the robot has {count} joints that move"),
-            format!("a spec has at most {MAX_ITEMS} coordinates: import a part of the robot"),
-        );
+        let message = format!("the robot has {count} joints that move");
+        let help =
+            format!("a spec has at most {MAX_ITEMS} coordinates: import a part of the robot");
+        findings.error(Code::LimitExceeded, xml::tag(root), message, help);
         return Err(fail(findings.into_inner()));
     }
     let equations = loops::equations(&robot, &tree, &findings);
@@ -283,15 +259,8 @@ pub fn import_with(
         return Err(fail(findings.into_inner()));
     }
     let written = spec::write(file, format, &robot, &tree, &equations, options);
-    if let Some(name) = written.unused.first() {
-        let known = written.known.iter().map(String::as_str);
-        let help = did_you_mean(name, known, || {
-            "name links, joints or parameters of the robot".to_owned()
-        });
-        return Err(Failure::Unknown {
-            name: name.clone(),
-            help,
-        });
+    if let Some(unknown) = written.unknown {
+        return Err(unknown);
     }
     if let Err(report) = appell_spec::load("robot.toml", &written.text) {
         refuse(&report, &written.lines, xml::tag(root), &findings);

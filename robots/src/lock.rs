@@ -20,21 +20,13 @@ impl FromStr for Lock {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (joint, value) = match text.rsplit_once('=') {
-            Some((joint, value)) => (joint, Some(value)),
-            None => (text, None),
-        };
-        let number = |value: &str| {
-            value
-                .trim()
-                .parse::<f64>()
-                .ok()
-                .filter(|value| value.is_finite())
-        };
-        let shown = appell_spec::shown;
+        let split = text.rsplit_once('=');
+        let (joint, value) = split.map_or((text, None), |(joint, value)| (joint, Some(value)));
         let value = value.map(|value| {
-            number(value)
-                .ok_or_else(|| format!("`{}` is not a number; write rad or m", shown(value)))
+            let number = value.trim().parse::<f64>().ok();
+            let number = number.filter(|number| number.is_finite());
+            let shown = appell_spec::shown(value);
+            number.ok_or_else(|| format!("`{shown}` is not a number; write rad or m"))
         });
         let joint = joint.trim();
         if joint.is_empty() {

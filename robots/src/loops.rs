@@ -61,18 +61,12 @@ impl Equations {
     }
 }
 
-/// Which equation a row belongs to.
-enum Of {
+/// An equation between coordinates.
+#[derive(Clone, Copy)]
+enum Row {
     Coupling(usize),
     /// Connection, pair of points and axis.
     Meeting(usize, usize, usize),
-}
-
-/// An equation between coordinates.
-struct Row {
-    of: Of,
-    /// The preferred dependent coordinate.
-    preferred: Option<usize>,
 }
 
 /// The equations of all couplings and connections. Refuses inconsistent ones.
@@ -81,54 +75,49 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
     let places = Places::new(robot, tree, freedoms);
     let count = robot.couplings.len() + 9 * robot.connections.len();
     if count.saturating_mul(places.freedoms.len()) > MOST_ENTRIES {
-        let most = robot.connections.iter().map(|one| &one.place);
+        let mut most = robot.connections.iter().map(|one| &one.place);
         let place = most
-            .chain(robot.couplings.iter().map(|one| &one.place))
-            .next();
-        findings.error(
-            Code::LimitExceeded,
-            place.cloned().unwrap_or_default(),
-            format!(
-                "{count} equations between {} rates are too many",
-                places.freedoms.len()
-            ),
-            "leave the couplings out, or import a part of the robot",
+            .next()
+            .or(robot.couplings.first().map(|one| &one.place));
+        let message = format!(
+            "{count} equations between {} rates are too many",
+            places.freedoms.len()
         );
+        let help = "leave the couplings out, or import a part of the robot";
+        let place = place.cloned().unwrap_or_default();
+        findings.error(Code::LimitExceeded, place, message, help);
         return Equations::default();
     }
     let mut equations = Equations::default();
-    let mut rows = Vec::new();
+    let (mut rows, mut preferred) = (Vec::new(), Vec::new());
     for (index, coupling) in robot.couplings.iter().enumerate() {
         equations.couplings.push(None);
-        let preferred = match coupling.follows.terms.as_slice() {
+        // The preferred dependent coordinate.
+        preferred.push(match coupling.follows.terms.as_slice() {
             [(name, _)] => places.column(name),
             _ => None,
-        };
-        let of = Of::Coupling(index);
-        rows.push(Row { of, preferred });
+        });
+        rows.push(Row::Coupling(index));
     }
     for (index, connection) in robot.connections.iter().enumerate() {
         let meetings = places.meetings(connection);
         let each = (0..meetings.len()).flat_map(|meeting| (0..3).map(move |axis| (meeting, axis)));
-        rows.extend(each.map(|(meeting, axis)| Row {
-            of: Of::Meeting(index, meeting, axis),
-            preferred: None,
-        }));
+        rows.extend(each.map(|(meeting, axis)| Row::Meeting(index, meeting, axis)));
         equations.meetings.push((connection.name.clone(), meetings));
     }
     places.refuse_what_stays_open(&rows, findings);
-    let (kept, start) = places.followers(&rows);
+    preferred.resize(rows.len(), None);
+    let (kept, start) = places.followers(&preferred);
     for (row, pivot) in &kept {
-        let (row, follower) = (&rows[*row], places.follower(*pivot));
-        if places.turns(*pivot) {
-            places.refuse(&row.of, follower, findings);
-        }
-        match row.of {
-            Of::Coupling(index) => equations.couplings[index] = Some(follower),
-            Of::Meeting(connection, meeting, axis) => {
-                equations.meetings[connection].1[meeting]
-                    .rows
-                    .push((axis, follower));
+        let follower = places.follower(*pivot);
+        match rows[*row] {
+            Row::Coupling(index) => equations.couplings[index] = Some(follower),
+            Row::Meeting(index, meeting, axis) => {
+                if places.turns(*pivot) {
+                    places.refuse(&robot.connections[index], follower, findings);
+                }
+                let (_, meetings) = &mut equations.meetings[index];
+                meetings[meeting].rows.push((axis, follower));
             }
         }
     }
@@ -224,26 +213,23 @@ impl<'a> Places<'a> {
         let Some((row, off)) = off.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
             return;
         };
-        let (name, place) = match rows[row].of {
-            Of::Coupling(index) => {
+        let (name, place) = match rows[row] {
+            Row::Coupling(index) => {
                 let coupling = &self.robot.couplings[index];
                 (&coupling.name, &coupling.place)
             }
-            Of::Meeting(index, ..) => {
+            Row::Meeting(index, ..) => {
                 let connection = &self.robot.connections[index];
                 (&connection.name, &connection.place)
             }
         };
-        findings.error(
-            Code::NotAllowedHere,
-            place.clone(),
-            format!(
-                "`{}` cannot hold near the joint positions: its residual is {} in SI units",
-                appell_spec::shown(name),
-                crate::letters::plain((off * 1e6).round() / 1e6)
-            ),
-            "correct places, lengths or values, or import it without couplings",
+        let message = format!(
+            "`{}` cannot hold near the joint positions: its residual is {} in SI units",
+            appell_spec::shown(name),
+            crate::letters::plain((off * 1e6).round() / 1e6)
         );
+        let help = "correct places, lengths or values, or import it without couplings";
+        findings.error(Code::NotAllowedHere, place.clone(), message, help);
     }
 
     /// All equations at a configuration.
@@ -377,14 +363,15 @@ impl<'a> Places<'a> {
     /// Their number is the generic rank. Couplings prefer their declared dependent coordinate; otherwise rows and
     /// dependent freedoms are those with the largest pivots at the start, or in the generic configuration if the
     /// rank at the start is smaller.
-    fn followers(&self, rows: &[Row]) -> (Vec<(usize, usize)>, Option<Configuration>) {
-        let weights: Vec<f64> = (0..self.freedoms.len())
-            .map(|column| self.weight(column))
-            .collect();
-        let preferred: Vec<Option<usize>> = rows.iter().map(|row| row.preferred).collect();
+    fn followers(
+        &self,
+        preferred: &[Option<usize>],
+    ) -> (Vec<(usize, usize)>, Option<Configuration>) {
+        let weights = (0..self.freedoms.len()).map(|column| self.weight(column));
+        let weights: Vec<f64> = weights.collect();
         let at = |place: &Configuration| {
             let all = self.linear(place).rows;
-            let kept = eliminated(all.clone(), &preferred, &weights);
+            let kept = eliminated(all.clone(), preferred, &weights);
             let own: Vec<&Vec<f64>> = kept.iter().map(|one| &all[one.row]).collect();
             let pivots: Vec<usize> = kept.iter().map(|one| one.pivot).collect();
             let pivots = matched(&own, &pivots);
@@ -435,32 +422,23 @@ impl<'a> Places<'a> {
     /// Whether a freedom is a rotation that has no angle as its coordinate.
     fn turns(&self, freedom: usize) -> bool {
         let Freedom { link, component } = self.freedoms[freedom];
-        match self.robot.links[link]
-            .joint
-            .as_ref()
-            .map(|joint| joint.motion)
-        {
+        let joint = self.robot.links[link].joint.as_ref();
+        match joint.map(|joint| joint.motion) {
             Some(Motion::Free) => component >= 3,
             Some(Motion::Ball) => true,
             _ => false,
         }
     }
 
-    fn refuse(&self, of: &Of, follower: Follower, findings: &Findings) {
-        let Of::Meeting(connection, ..) = of else {
-            return;
-        };
-        let connection = &self.robot.connections[*connection];
+    fn refuse(&self, connection: &Connection, follower: Follower, findings: &Findings) {
         let joint = &self.tree.bodies[follower.body].joint.name;
-        findings.error(
-            Code::NotAllowedHere,
-            connection.place.clone(),
-            format!(
-                "`{}` closes a loop in which the attitude of joint `{joint}` would have to follow",
-                connection.name
-            ),
-            "connect a body on a ball joint or a free joint by a point only, or use hinges",
+        let message = format!(
+            "`{}` closes a loop in which the attitude of joint `{joint}` would have to follow",
+            connection.name
         );
+        let help = "connect a body on a ball joint or a free joint by a point only, or use hinges";
+        let place = connection.place.clone();
+        findings.error(Code::NotAllowedHere, place, message, help);
     }
 
     /// Refuses a joint without inertia along it, dependent coordinates included, as it has no equation of motion.
@@ -479,12 +457,12 @@ impl<'a> Places<'a> {
         if let Some(freedom) = mass::without_inertia(&m, &rows) {
             let body = &self.tree.bodies[self.follower(freedom).body];
             let (link, joint) = (&links[body.link].name, &body.joint.name);
-            findings.error(
-                Code::SingularMassMatrix,
-                links[body.link].place.clone(),
-                format!("`{link}` moves by joint `{joint}` but has no inertia along it, nor has anything on it"),
-                "give it a mass and an inertia, or make the joint fixed",
+            let message = format!(
+                "`{link}` moves by joint `{joint}` but has no inertia along it, nor has anything on it"
             );
+            let help = "give it a mass and an inertia, or make the joint fixed";
+            let place = links[body.link].place.clone();
+            findings.error(Code::SingularMassMatrix, place, message, help);
         }
     }
 
@@ -516,7 +494,7 @@ impl<'a> Places<'a> {
         };
         let origin = self.drawn[moved.link].of(origin);
         let at = self.axes(body, &self.drawn).inverse().of(minus(at, origin));
-        (Some(body), crate::inertia::position_without_rounding(at))
+        (Some(body), crate::inertia::without_rounding(at))
     }
 }
 

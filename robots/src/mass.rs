@@ -109,18 +109,10 @@ pub(crate) fn matrix(links: &[Link], tendons: &[Tendon], poses: &[Pose]) -> Mass
         terms.push(carried[freedom.link].terms(twists[column]) + m[column][column].abs());
     }
     for tendon in tendons.iter().filter(|tendon| tendon.armature != 0.0) {
-        let factor = |freedom: &Freedom| {
-            let joint = links[freedom.link].joint.as_ref();
-            let own = |(name, _): &&(String, f64)| joint.is_some_and(|joint| joint.name == *name);
-            tendon
-                .length
-                .terms
-                .iter()
-                .filter(own)
-                .map(|(_, factor)| factor)
-                .sum()
-        };
-        let rates: Vec<f64> = freedoms.iter().map(factor).collect();
+        let rates = freedoms
+            .iter()
+            .map(|one| one.rate(links, &tendon.length.terms));
+        let rates: Vec<f64> = rates.collect();
         for (row, i) in m.iter_mut().zip(&rates) {
             for (entry, j) in row.iter_mut().zip(&rates) {
                 *entry += tendon.armature * i * j;
@@ -212,13 +204,9 @@ pub(crate) fn damp(drives: &mut [Drive], links: &[Link], tendons: &[Tendon]) -> 
             }
         };
         // As in MuJoCo 4.0: m = (J M⁻¹ Jᵀ)⁻¹.
-        let along = freedoms.iter().map(|freedom| {
-            let joint = links[freedom.link].joint.as_ref();
-            let own = terms
-                .iter()
-                .filter(|(name, _)| joint.is_some_and(|joint| joint.name == *name));
-            drive.gear * own.map(|(_, factor)| factor).sum::<f64>()
-        });
+        let along = freedoms
+            .iter()
+            .map(|one| drive.gear * one.rate(links, &terms));
         let along: Vec<f64> = along.collect();
         let rows = mobility.iter().zip(&along);
         let sum: f64 = rows

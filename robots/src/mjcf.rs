@@ -16,7 +16,7 @@ mod tendons;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 
 use crate::includes::Whole;
 use crate::inertia::Inertia;
@@ -25,36 +25,24 @@ use crate::model::{LeftOut, Link, Robot};
 use crate::options::Options;
 use crate::rotation::{Pose, Rotation, Vector};
 use crate::without::Without;
-use crate::xml::{Element, Findings, Span, children, elements, exactly, tag};
+use crate::xml::{Element, Findings, Span, children, elements, exactly, no_such, number, tag};
 
 use compiler::{Compiler, InertiaFrom};
-pub use corrected::{Amount, Change, Corrected, JointNumber, corrected};
-use defaults::Defaults;
+pub use corrected::{Amount, Change, Corrected, Number, corrected};
+use defaults::{Defaults, Given};
 use equality::Equality;
 pub(crate) use replicate::expanded;
+use schema::has;
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
 
 /// Sections that are read elsewhere.
-const ELSEWHERE: &[&str] = &[
-    "compiler",
-    "option",
-    "default",
-    "asset",
-    "worldbody",
-    "equality",
-    "tendon",
-    "actuator",
-    "size",
-    "statistic",
-    "visual",
-    "extension",
-    "deformable",
-];
+const ELSEWHERE: &str = "compiler option default asset worldbody equality tendon actuator size statistic visual \
+                         extension deformable";
 /// Elements of a body that are read separately.
-const READ: &[&str] = &["joint", "inertial", "freejoint"];
+const READ: &str = "joint inertial freejoint";
 /// Elements that change the tree, and are not read.
-const NOT_YET: &[&str] = &["replicate", "composite", "flexcomp", "attach"];
+const NOT_YET: &str = "replicate composite flexcomp attach";
 
 /// State that all parts of the reader share.
 pub(crate) struct Reader<'x, 'f> {
@@ -129,18 +117,15 @@ pub(crate) fn read(
     for section in elements(root) {
         match section.tag_name().name() {
             "worldbody" => reader.level(section, ground),
-            name if NOT_YET.contains(&name) => reader.not_yet(section),
-            name if ELSEWHERE.contains(&name) => {}
+            name if has(NOT_YET, name) => reader.not_yet(section),
+            name if has(ELSEWHERE, name) => {}
             name => reader.leave_out_of(name, section),
         }
     }
     if reader.links.is_empty() {
-        findings.error(
-            Code::MissingSection,
-            tag(root),
-            "the file has no body",
-            "an MJCF has `<worldbody>` with `<body>`s",
-        );
+        let message = "the file has no body";
+        let help = "an MJCF has `<worldbody>` with `<body>`s";
+        findings.error(Code::MissingSection, tag(root), message, help);
     }
     if let Some(total) = reader.compiler.total_mass {
         reader.scale_to(total);
@@ -155,15 +140,11 @@ pub(crate) fn read(
         (damped, "dampratio", "write `kv`"),
     ] {
         if !done {
-            findings.error(
-                Code::LimitExceeded,
-                tag(root),
-                format!(
-                    "`{what}` is limited to {} degrees of freedom",
-                    mass::MOST_FREEDOMS
-                ),
-                help,
+            let message = format!(
+                "`{what}` is limited to {} degrees of freedom",
+                mass::MOST_FREEDOMS
             );
+            findings.error(Code::LimitExceeded, tag(root), message, help);
         }
     }
     let is_off = |flag: &str| schema::disabled(root, flag);
@@ -283,12 +264,10 @@ impl<'x> Reader<'x, '_> {
         let help = "let MuJoCo write out the bodies that it makes, and import `flat.xml`: \
                     `python -c \"import mujoco; s = mujoco.MjSpec.from_file('FILE'); s.compile(); \
                     open('flat.xml', 'w').write(s.to_xml())\"`";
-        self.findings.error(
-            Code::NotAllowedHere,
-            tag(element),
-            format!("`{name}` changes the tree of bodies, and `import` does not read it yet"),
-            help,
-        );
+        let message =
+            format!("`{name}` changes the tree of bodies, and `import` does not read it yet");
+        self.findings
+            .error(Code::NotAllowedHere, tag(element), message, help);
     }
 
     /// Reads the children of a body, a frame or the world.
@@ -299,7 +278,7 @@ impl<'x> Reader<'x, '_> {
                 "site" => self.site_at(inner, level),
                 "geom" => self.touch(inner, level.class),
                 "frame" => {
-                    let pose = level.pose.then(self.pose(inner, None));
+                    let pose = level.pose.then(self.own_pose(inner));
                     let class = self.class(inner, "childclass").or(level.class);
                     self.level(
                         inner,
@@ -310,14 +289,14 @@ impl<'x> Reader<'x, '_> {
                         },
                     );
                 }
-                name if NOT_YET.contains(&name) => self.not_yet(inner),
-                name if READ.contains(&name) && level.parent.is_none() => self.findings.error(
+                name if has(NOT_YET, name) => self.not_yet(inner),
+                name if has(READ, name) && level.parent.is_none() => self.findings.error(
                     Code::NotAllowedHere,
                     tag(inner),
                     format!("the world holds a `{name}`"),
                     "put it inside a `<body>`, together with its geoms",
                 ),
-                name if READ.contains(&name) => {}
+                name if has(READ, name) => {}
                 name => self.leave_out(name.to_owned(), inner),
             }
         }
@@ -328,39 +307,44 @@ impl<'x> Reader<'x, '_> {
         let given = element.attribute_node(key)?;
         let name = given.value();
         if !self.defaults.knows(name) {
-            self.findings.error(
-                Code::UnknownReference,
-                given.range_value(),
-                format!("there is no default class `{}`", appell_spec::shown(name)),
-                did_you_mean(name, self.defaults.names(), || {
-                    "classes are defined by `<default class=\"…\">`".to_owned()
-                }),
-            );
+            let (at, known) = (given.range_value(), self.defaults.names());
+            let help = "classes are defined by `<default class=\"…\">`";
+            self.findings
+                .add(no_such("default class", name, at, known, help));
             return None;
         }
         Some(name)
     }
 
-    /// Position and orientation of an element.
-    fn pose(
+    /// The attributes of an element; `kinds` are the names of elements of its kind in classes.
+    fn given(
         &self,
         element: Element<'x>,
-        defaults: Option<(&'static str, Option<&'x str>)>,
-    ) -> Pose {
-        let attribute = |key: &str| {
-            let own = element.attribute_node(key);
-            own.or_else(|| {
-                defaults.and_then(|(kind, class)| self.defaults.attribute(kind, class, key))
-            })
-        };
-        let position =
-            attribute("pos").and_then(|given| exactly(self.findings, &given, "a position, x y z,"));
+        kinds: &'static str,
+        class: Option<&'x str>,
+    ) -> Given<'_, 'x> {
+        Given {
+            element,
+            kinds,
+            class,
+            defaults: &self.defaults,
+            findings: self.findings,
+        }
+    }
+
+    /// Position and orientation of an element of a kind without defaults.
+    fn own_pose(&self, element: Element<'x>) -> Pose {
+        self.pose(&self.given(element, "", None))
+    }
+
+    /// Position and orientation of an element.
+    fn pose(&self, given: &Given<'_, 'x>) -> Pose {
+        let position = given.exactly("pos", "a position, x y z,");
+        let angles = &self.compiler.angles;
         // An orientation of the element takes precedence over one of its class in another form.
-        let own = self
-            .compiler
-            .angles
-            .orientation(&|key| element.attribute_node(key), self.findings);
-        let rotation = own.or_else(|| self.compiler.angles.orientation(&attribute, self.findings));
+        let own = angles.orientation(&|key| given.element.attribute_node(key), self.findings);
+        let rotation =
+            own.or_else(|| angles.orientation(&|key| given.attribute(key), self.findings));
         Pose {
             rotation: rotation.unwrap_or(Rotation::IDENTITY),
             position: position.unwrap_or_default(),
@@ -368,7 +352,7 @@ impl<'x> Reader<'x, '_> {
     }
 
     fn body(&mut self, element: Element<'x>, level: Level<'x>) {
-        let pose = level.pose.then(self.pose(element, None));
+        let pose = level.pose.then(self.own_pose(element));
         let class = self.class(element, "childclass").or(level.class);
         let name = element.attribute("name");
         let name = name.map_or_else(|| format!("body{}", self.links.len() + 1), str::to_owned);
@@ -381,8 +365,7 @@ impl<'x> Reader<'x, '_> {
         }
         let counts = self.all_count || !joints.is_empty() || self.moves(level.parent);
         let inertia = self.inertia(element, &name, &held, counts);
-        let carried = element.attribute_node("gravcomp");
-        let carried = carried.and_then(|given| exactly(self.findings, &given, "`gravcomp`"));
+        let carried = number(self.findings, element, "gravcomp");
         let own = Link::fixed(name, level.parent, pose, tag(element));
         let from = self.links.len();
         let here = own.moved_by(joints, &mut self.links);
@@ -392,7 +375,7 @@ impl<'x> Reader<'x, '_> {
             }
         }
         self.links[here].inertia = inertia;
-        self.links[here].carried = carried.map_or(0.0, |[share]: [f64; 1]| share);
+        self.links[here].carried = carried.unwrap_or_default();
         let inside = Level {
             parent: Some(here),
             pose: Pose::IDENTITY,
@@ -419,7 +402,9 @@ impl<'x> Reader<'x, '_> {
     /// Records the pose of a site by its name; sites that are not referenced are only drawn.
     fn site_at(&mut self, element: Element<'x>, level: Level<'x>) {
         let class = self.class(element, "class").or(level.class);
-        let pose = level.pose.then(self.pose(element, Some(("site", class))));
+        let pose = level
+            .pose
+            .then(self.pose(&self.given(element, "site", class)));
         if let Some(name) = element.attribute("name") {
             self.sites.insert(name.to_owned(), (level.parent, pose));
         }
@@ -437,7 +422,7 @@ impl<'x> Reader<'x, '_> {
         for element in elements(holder) {
             if element.has_tag_name("frame") {
                 let class = self.class(element, "childclass").or(class);
-                self.hold(element, pose.then(self.pose(element, None)), class, held);
+                self.hold(element, pose.then(self.own_pose(element)), class, held);
             } else {
                 held.push(Held {
                     element,
@@ -469,32 +454,24 @@ impl<'x> Reader<'x, '_> {
         };
         let inertia = self.compiler.corrected(inertia).without_rounding();
         if let Some(reason) = inertia.impossible() {
-            self.findings.warning(
-                Code::NotPhysical,
-                tag(inertial.map_or(body, |inertial| inertial.element)),
-                format!("no body can have the inertia of `{name}`: {reason}"),
-                "it is taken as it is; the motion is right wherever the mass matrix is positive definite",
-            );
+            let message = format!("no body can have the inertia of `{name}`: {reason}");
+            let help = "it is taken as it is; the motion is right wherever the mass matrix is positive definite";
+            let place = tag(inertial.map_or(body, |inertial| inertial.element));
+            self.findings
+                .warning(Code::NotPhysical, place, message, help);
         }
         inertia
     }
 
     fn inertial(&self, element: Element<'x>) -> Inertia {
-        let pose = self.pose(element, None);
-        let number = |key: &str| element.attribute_node(key);
-        let mass = number("mass").and_then(|given| exactly::<1>(self.findings, &given, "a mass"));
-        let diagonal = number("diaginertia")
-            .and_then(|given| exactly::<3>(self.findings, &given, "a diagonal, xx yy zz,"));
-        let full = number("fullinertia").and_then(|given| {
-            exactly::<6>(self.findings, &given, "an inertia, xx yy zz xy xz yz,")
-        });
-        if element.attribute_node("mass").is_none() {
-            self.findings.error(
-                Code::MissingKey,
-                tag(element),
-                "`inertial` has no `mass`",
-                "write `mass=\"1\"`",
-            );
+        let given = self.given(element, "", None);
+        let mass = given.exactly("mass", "a mass");
+        let diagonal = given.exactly("diaginertia", "a diagonal, xx yy zz,");
+        let full = given.exactly("fullinertia", "an inertia, xx yy zz xy xz yz,");
+        if !element.has_attribute("mass") {
+            let (message, help) = ("`inertial` has no `mass`", "write `mass=\"1\"`");
+            self.findings
+                .error(Code::MissingKey, tag(element), message, help);
         }
         let tensor = full.or_else(|| diagonal.map(|[xx, yy, zz]| [xx, yy, zz, 0.0, 0.0, 0.0]));
         Inertia {
@@ -502,7 +479,7 @@ impl<'x> Reader<'x, '_> {
             centre: [0.0; 3],
             tensor: tensor.unwrap_or_default(),
         }
-        .placed(pose)
+        .placed(self.pose(&given))
     }
 
     /// Scales all masses and inertias.

@@ -3,32 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Attributes that can be parameters.
-const ATTRIBUTES: &[&str] = &[
-    "mass",
-    "com",
-    "com.x",
-    "com.y",
-    "com.z",
-    "inertia",
-    "damping",
-    "armature",
-    "frictionloss",
-    "stiffness",
-    "springref",
-    "ref",
-    "kp",
-    "kv",
-    "gear",
-    "gain",
-    "bias",
-    "forcerange",
-    "timeconst",
-    "delay",
-    "gravity",
-    "gravity.x",
-    "gravity.y",
-    "gravity.z",
-];
+const ATTRIBUTES: &str = "mass com com.x com.y com.z inertia damping armature frictionloss stiffness springref ref kp kv gear gain bias \
+                          forcerange timeconst delay gravity gravity.x gravity.y gravity.z";
 /// Those of bodies, and of joints.
 pub(crate) const OF_BODIES: &[&str] = &["mass", "com.x", "com.y", "com.z", "inertia"];
 pub(crate) const OF_JOINTS: &[&str] = &[
@@ -44,19 +20,23 @@ pub(crate) const OPTION: &str = "option";
 
 /// Whether a name ends in one of the attributes.
 pub(crate) fn has_attribute(name: &str) -> bool {
-    name.contains('*') || ATTRIBUTES.iter().any(|one| is_attribute_of(name, one))
+    name.contains('*') || ends_in_attribute(name)
 }
 
-fn is_attribute_of(name: &str, attribute: &str) -> bool {
-    name.strip_suffix(attribute)
-        .is_some_and(|rest| rest.ends_with('.'))
+fn ends_in_attribute(name: &str) -> bool {
+    let mut all = ATTRIBUTES.split_ascii_whitespace();
+    all.any(|attribute| {
+        let rest = name.strip_suffix(attribute);
+        rest.is_some_and(|rest| rest.ends_with('.'))
+    })
 }
 
 /// Names and patterns, and the names that exist.
 #[derive(Debug)]
 pub(crate) struct Patterns<'a> {
     all: &'a [String],
-    known: BTreeSet<String>,
+    /// All names that exist.
+    pub(crate) known: BTreeSet<String>,
     /// By body: those that are fixed to it.
     fixed_to: BTreeMap<String, Vec<String>>,
 }
@@ -110,23 +90,16 @@ impl<'a> Patterns<'a> {
         patterns.any(|pattern| all.iter().any(|name| is(pattern, name)))
     }
 
-    /// Names without an element, and patterns without an attribute.
-    pub(crate) fn unknown(&self) -> Vec<&str> {
+    /// The first name without an element, or pattern without an attribute.
+    pub(crate) fn unknown(&self) -> Option<&String> {
         let is_known = |pattern: &&String| {
             if pattern.contains('*') {
-                ATTRIBUTES.iter().any(|one| is_attribute_of(pattern, one))
-                    || self.known.iter().any(|name| fits(pattern, name))
+                ends_in_attribute(pattern) || self.known.iter().any(|name| fits(pattern, name))
             } else {
                 self.known.contains(*pattern)
             }
         };
-        let unknown = self.all.iter().filter(|pattern| !is_known(pattern));
-        unknown.map(String::as_str).collect()
-    }
-
-    /// All names that exist.
-    pub(crate) fn known(&self) -> &BTreeSet<String> {
-        &self.known
+        self.all.iter().find(|pattern| !is_known(pattern))
     }
 }
 

@@ -1,6 +1,8 @@
 //! Rotations and poses. A rotation takes components in a turned frame to those in the frame from
 //! which it is turned.
 
+use crate::elimination::largest;
+
 /// Three components.
 pub(crate) type Vector = [f64; 3];
 
@@ -62,7 +64,7 @@ pub(crate) fn minus(a: Vector, b: Vector) -> Vector {
 
 /// The unit vector along `a`, unless it has no direction.
 pub(crate) fn unit(a: Vector) -> Option<Vector> {
-    let largest = a.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
+    let largest = largest(&a);
     if largest <= f64::MIN_POSITIVE {
         return None;
     }
@@ -121,7 +123,7 @@ impl Rotation {
 
     /// The rotation of a quaternion w, x, y, z of any length but zero.
     pub(crate) fn quaternion(q: [f64; 4]) -> Option<Self> {
-        let largest = q.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
+        let largest = largest(&q);
         if largest <= f64::MIN_POSITIVE {
             return None;
         }

@@ -12,6 +12,7 @@ mod units;
 
 use appell_spec::limits::{MAX_ITEMS, MAX_SENTENCE};
 
+use crate::Failure;
 use crate::assembly::Configuration;
 use crate::dictionary::{BodyName, Dictionary, JointName};
 use crate::format::Format;
@@ -71,13 +72,13 @@ pub(crate) struct Writer<'a> {
     outputs: Section,
 }
 
-/// A spec, and the selected names that matched no number.
+/// A spec, and how it came about.
 pub(crate) struct Written {
     pub(crate) text: String,
     /// Where lines begin, and where in the file of the robot they come from.
     pub(crate) lines: Vec<(usize, Span)>,
-    pub(crate) unused: Vec<String>,
-    pub(crate) known: Vec<String>,
+    /// The first selected name that matched no number.
+    pub(crate) unknown: Option<Failure>,
     pub(crate) dictionary: Dictionary,
 }
 
@@ -135,13 +136,7 @@ pub(crate) fn write(
     Written {
         text,
         lines,
-        unused: writer
-            .numbers
-            .unused()
-            .into_iter()
-            .map(str::to_owned)
-            .collect(),
-        known: writer.numbers.known().map(str::to_owned).collect(),
+        unknown: writer.numbers.unknown(),
         dictionary: writer.dictionary,
     }
 }
@@ -328,10 +323,8 @@ impl<'a> Writer<'a> {
         let count = self.tree.bodies.len();
         let joints = if count == 1 { "joint" } else { "joints" };
         mechanism.key("name", quoted(name));
-        mechanism.key(
-            "title",
-            quoted(&sentence(&format!("{title}, {count} {joints}"))),
-        );
+        let title = sentence(&format!("{title}, {count} {joints}"));
+        mechanism.key("title", quoted(&title));
         mechanism.key("source", quoted(&sentence(file)));
         let mut parameters = Section::default();
         for Parameter {
@@ -346,12 +339,7 @@ impl<'a> Writer<'a> {
                 .raw("value", &crate::letters::plain(*value))
                 .text("unit", unit)
                 .text("about", &sentence(about));
-            let item = if *never_negative {
-                item.raw("at_least", "0")
-            } else {
-                item
-            };
-            parameters.add(name, &item);
+            parameters.add(name, &item.raw_if(*never_negative, "at_least", "0"));
         }
         mechanism.write("mechanism", text, lines);
         for (title, section) in [

@@ -32,9 +32,31 @@ impl Item {
         self
     }
 
+    /// A key with a sentence if a condition holds.
+    pub(crate) fn text_if(self, holds: bool, key: &str, value: &str) -> Self {
+        if holds { self.text(key, value) } else { self }
+    }
+
+    /// A key with a TOML value if a condition holds.
+    pub(crate) fn raw_if(self, holds: bool, key: &str, value: &str) -> Self {
+        if holds { self.raw(key, value) } else { self }
+    }
+
     /// A key with an expression; a plain number needs no quotes.
     pub(crate) fn expression(self, key: &str, value: &str) -> Self {
         self.raw(key, &expression(value))
+    }
+
+    /// A generalised force along what a key and its value give.
+    pub(crate) fn generalized((key, along): (&str, &str), force: &str) -> Self {
+        let item = Self::default().text("kind", "generalized");
+        item.text(key, along).text("force", force)
+    }
+
+    /// A point, with its components from another one in a frame.
+    pub(crate) fn point(from: &str, frame: &str, at: &[String]) -> Self {
+        let item = Self::default().text("from", from).text("in", frame);
+        item.raw("at", &list(at))
     }
 
     /// A key with a list of expressions.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use appell_spec::Code;
 
-use crate::inertia::{Inertia, position_without_rounding};
+use crate::inertia::{Inertia, without_rounding};
 use crate::model::{Joint, Link, Motion};
 use crate::rotation::{Axis, Pose, Rotation, Turn, Vector, scaled};
 use crate::xml::Findings;
@@ -90,12 +90,10 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
             },
             Some(joint) => {
                 if joint.motion == Motion::Free && on.body.is_some() {
-                    findings.error(
-                        Code::NotAllowedHere,
-                        link.place.clone(),
-                        format!("`{}` floats, but stands on a link that moves", link.name),
-                        "only what stands on the ground can float",
-                    );
+                    let message =
+                        format!("`{}` floats, but stands on a link that moves", link.name);
+                    let help = "only what stands on the ground can float";
+                    findings.error(Code::NotAllowedHere, link.place.clone(), message, help);
                 }
                 tree.moved_by(joint, index, on.body, pose)
             }
@@ -103,19 +101,16 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
         seats.push(seat);
         let inertia = link.inertia.placed(seat.pose);
         if !inertia.is_finite() || !pose.position.iter().all(|one| one.is_finite()) {
-            findings.error(
-                Code::NotFinite,
-                link.place.clone(),
-                format!(
-                    "place or inertia of `{}` are too large for a number",
-                    link.name
-                ),
-                "give lengths in m, masses in kg",
+            let message = format!(
+                "place or inertia of `{}` are too large for a number",
+                link.name
             );
+            let help = "give lengths in m, masses in kg";
+            findings.error(Code::NotFinite, link.place.clone(), message, help);
         }
         let part = Part {
             link: index,
-            position: position_without_rounding(seat.pose.position),
+            position: without_rounding(seat.pose.position),
             centre: inertia.centre,
         };
         match seat.body {
@@ -179,7 +174,7 @@ impl Tree {
             own,
             axis,
             offset,
-            position: position_without_rounding(pose.of(anchor)),
+            position: without_rounding(pose.of(anchor)),
             inertia: Inertia::NONE,
             parts: Vec::new(),
             keeps_axes: own == Rotation::IDENTITY,

@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 
 use crate::inertia::Inertia;
 use crate::model::{Coupling, Joint, LeftOut, Link, Motion, Robot, Sum};
 use crate::options::Options;
 use crate::rotation::{Axis, Pose, Rotation, Vector, unit};
 use crate::without::Without;
-use crate::xml::{Element, Findings, child, children, elements, exactly, tag};
+use crate::xml::{Element, Findings, child, children, elements, exactly, no_such, no_type, tag};
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
 
@@ -34,21 +34,15 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings, options: &Options) ->
             continue;
         };
         if by_name.insert(name, index).is_some() {
-            findings.error(
-                Code::DuplicateName,
-                tag(*link),
-                format!("there are two links `{name}`"),
-                "rename one of them",
-            );
+            let message = format!("there are two links `{name}`");
+            let help = "rename one of them";
+            findings.error(Code::DuplicateName, tag(*link), message, help);
         }
     }
     if links.is_empty() {
-        findings.error(
-            Code::MissingSection,
-            tag(root),
-            "the robot has no link",
-            "a URDF has `<link>`s, connected by `<joint>`s",
-        );
+        let message = "the robot has no link";
+        let help = "a URDF has `<link>`s, connected by `<joint>`s";
+        findings.error(Code::MissingSection, tag(root), message, help);
     }
     let inertias: Vec<Inertia> = links.iter().map(|link| inertia(*link, findings)).collect();
     let (connections, joints_by_name) = joints(root, &by_name, findings);
@@ -101,12 +95,8 @@ fn name<'x>(element: Element<'x>, findings: &Findings) -> Option<&'x str> {
     if name.is_none() {
         let kind = element.tag_name().name();
         let help = format!("give it one: `<{kind} name=\"…\">`");
-        findings.error(
-            Code::MissingKey,
-            tag(element),
-            format!("a `{kind}` without a name"),
-            help,
-        );
+        let message = format!("a `{kind}` without a name");
+        findings.error(Code::MissingKey, tag(element), message, help);
     }
     name
 }
@@ -141,10 +131,8 @@ fn unknown<'x>(
 
 /// A number from an attribute, with a default.
 fn number(element: Option<Element<'_>>, key: &str, default: f64, findings: &Findings) -> f64 {
-    let attribute = element.and_then(|element| element.attribute_node(key));
-    let read =
-        attribute.and_then(|attribute| exactly::<1>(findings, &attribute, &format!("`{key}`")));
-    read.map_or(default, |[number]| number)
+    let read = element.and_then(|element| crate::xml::number(findings, element, key));
+    read.unwrap_or(default)
 }
 
 fn vector(
@@ -186,12 +174,8 @@ fn inertia(link: Element<'_>, findings: &Findings) -> Inertia {
     ] {
         if found.is_none() {
             let message = format!("`inertial` has no `{word}`");
-            findings.error(
-                Code::MissingKey,
-                tag(inertial),
-                message,
-                format!("write `{example}`"),
-            );
+            let help = format!("write `{example}`");
+            findings.error(Code::MissingKey, tag(inertial), message, help);
         }
     }
     let entries = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
@@ -205,12 +189,10 @@ fn inertia(link: Element<'_>, findings: &Findings) -> Inertia {
     if let Some(reason) = own.impossible() {
         let link = link.attribute("name").unwrap_or_default();
         let at = if own.mass < 0.0 { mass } else { tensor };
-        findings.warning(
-            Code::NotPhysical,
-            tag(at.unwrap_or(inertial)),
-            format!("no body can have the inertia of link `{link}`: {reason}"),
-            "it is taken as it is; the motion is right wherever the mass matrix is positive definite",
-        );
+        let message = format!("no body can have the inertia of link `{link}`: {reason}");
+        let help = "it is taken as it is; the motion is right wherever the mass matrix is positive definite";
+        let place = tag(at.unwrap_or(inertial));
+        findings.warning(Code::NotPhysical, place, message, help);
     }
     own
 }
@@ -229,12 +211,8 @@ fn joints<'x>(
         };
         if names.insert(name, element).is_some() {
             let message = format!("there are two joints `{name}`");
-            findings.error(
-                Code::DuplicateName,
-                tag(element),
-                message,
-                "rename one of them",
-            );
+            let help = "rename one of them";
+            findings.error(Code::DuplicateName, tag(element), message, help);
         }
         let ends = ["parent", "child"].map(|end| link_of(element, end, links, findings));
         let joints = moves(element, name, findings);
@@ -262,26 +240,15 @@ fn link_of(
     let name = joint.attribute("name").unwrap_or_default();
     let Some(attribute) = child(joint, end).and_then(|end| end.attribute_node("link")) else {
         let message = format!("joint `{name}` has no {end}");
-        findings.error(
-            Code::MissingKey,
-            tag(joint),
-            message,
-            format!("write `<{end} link=\"…\"/>`"),
-        );
+        let help = format!("write `<{end} link=\"…\"/>`");
+        findings.error(Code::MissingKey, tag(joint), message, help);
         return None;
     };
     let link = links.get(attribute.value()).copied();
     if link.is_none() {
-        let known = || format!("the file has {} links, none of that name", links.len());
-        findings.error(
-            Code::UnknownReference,
-            attribute.range_value(),
-            format!(
-                "there is no link `{}`",
-                appell_spec::shown(attribute.value())
-            ),
-            did_you_mean(attribute.value(), links.keys().copied(), known),
-        );
+        let otherwise = format!("the file has {} links, none of that name", links.len());
+        let (name, at) = (attribute.value(), attribute.range_value());
+        findings.add(no_such("link", name, at, links.keys().copied(), &otherwise));
     }
     link
 }
@@ -290,12 +257,8 @@ fn link_of(
 fn moves(element: Element<'_>, name: &str, findings: &Findings) -> Vec<Joint> {
     let Some(kind) = element.attribute_node("type") else {
         let help = "write `type=\"revolute\"`, `continuous`, `prismatic` or `fixed`";
-        findings.error(
-            Code::MissingKey,
-            tag(element),
-            format!("joint `{name}` has no type"),
-            help,
-        );
+        let message = format!("joint `{name}` has no type");
+        findings.error(Code::MissingKey, tag(element), message, help);
         return Vec::new();
     };
     let without_axis =
@@ -316,15 +279,7 @@ fn moves(element: Element<'_>, name: &str, findings: &Findings) -> Vec<Joint> {
                 "floating",
                 "fixed",
             ];
-            findings.error(
-                Code::UnknownWord,
-                kind.range_value(),
-                format!(
-                    "there are no joints of type `{}`",
-                    appell_spec::shown(other)
-                ),
-                did_you_mean(other, kinds, || format!("types are {}", kinds.join(", "))),
-            );
+            findings.add(no_type("joints", other, kind.range_value(), &kinds));
             Vec::new()
         }
     }
@@ -335,12 +290,10 @@ fn axis(element: Element<'_>, name: &str, findings: &Findings) -> Vector {
     let given = child(element, "axis");
     let along = vector(given, "xyz", "a direction, x y z,", findings).unwrap_or([1.0, 0.0, 0.0]);
     unit(along).unwrap_or_else(|| {
-        findings.error(
-            Code::VanishingLength,
-            tag(given.unwrap_or(element)),
-            format!("the axis of joint `{name}` has length zero"),
-            "give its direction, such as `0 0 1`",
-        );
+        let message = format!("the axis of joint `{name}` has length zero");
+        let help = "give its direction, such as `0 0 1`";
+        let place = tag(given.unwrap_or(element));
+        findings.error(Code::VanishingLength, place, message, help);
         [1.0, 0.0, 0.0]
     })
 }
@@ -419,26 +372,18 @@ fn mimic<'x>(
     };
     if !joints.contains_key(other.value()) {
         let moving = joints.keys().copied().filter(|name| moves(name));
-        findings.error(
-            Code::UnknownReference,
-            other.range_value(),
-            format!("there is no joint `{}`", appell_spec::shown(other.value())),
-            did_you_mean(other.value(), moving, || {
-                format!("joint `{name}` follows another joint of the file")
-            }),
-        );
+        let otherwise = format!("joint `{name}` follows another joint of the file");
+        let (name, at) = (other.value(), other.range_value());
+        findings.add(no_such("joint", name, at, moving, &otherwise));
         return None;
     }
     if moves(name) && has_several(joints[other.value()]) {
-        findings.error(
-            Code::NotAllowedHere,
-            other.range_value(),
-            format!(
-                "joint `{name}` follows `{}`, which has several coordinates",
-                appell_spec::shown(other.value())
-            ),
-            "a joint follows one that turns or slides",
+        let message = format!(
+            "joint `{name}` follows `{}`, which has several coordinates",
+            appell_spec::shown(other.value())
         );
+        let help = "a joint follows one that turns or slides";
+        findings.error(Code::NotAllowedHere, other.range_value(), message, help);
     }
     let offset = number(Some(mimic), "offset", 0.0, findings);
     let multiplier = number(Some(mimic), "multiplier", 1.0, findings);
@@ -475,29 +420,24 @@ fn tree(
             connections[first].name,
             connection.name,
         );
-        findings.error(
-            Code::DuplicateName,
-            tag(connection.element),
-            format!("link `{link}` has two parents, by joint `{first}` and by joint `{second}`"),
-            "a URDF is a tree: remove one of the joints; to close a loop, keep the tree and add a connection \
-             (in MJCF: `equality/connect`)",
-        );
+        let message =
+            format!("link `{link}` has two parents, by joint `{first}` and by joint `{second}`");
+        let help = "a URDF is a tree: remove one of the joints; to close a loop, keep the tree and add a connection \
+             (in MJCF: `equality/connect`)";
+        findings.error(Code::DuplicateName, tag(connection.element), message, help);
     }
     let roots: Vec<usize> = (0..elements.len())
         .filter(|link| above[*link].is_none())
         .collect();
     let named = |link: &&usize| elements[**link].has_attribute("name");
     for extra in roots.iter().skip(1).filter(named) {
-        findings.error(
-            Code::UnknownReference,
-            tag(elements[*extra]),
-            format!(
-                "link `{}` is the child of no joint, and so is `{}`",
-                name(*extra),
-                name(roots[0])
-            ),
-            "a URDF has one root: connect the link by a joint, or remove it",
+        let message = format!(
+            "link `{}` is the child of no joint, and so is `{}`",
+            name(*extra),
+            name(roots[0])
         );
+        let help = "a URDF has one root: connect the link by a joint, or remove it";
+        findings.error(Code::UnknownReference, tag(elements[*extra]), message, help);
     }
     let mut below: Vec<Vec<usize>> = vec![Vec::new(); elements.len()];
     for (index, connection) in connections.iter().enumerate() {
@@ -536,15 +476,12 @@ fn tree(
             }
         }
         if let Some(lost) = (0..elements.len()).find(|link| !reached[*link]) {
-            findings.error(
-                Code::ReferenceCycle,
-                tag(elements[lost]),
-                format!(
-                    "link `{}` is not connected with the root: its joints form a circle",
-                    name(lost)
-                ),
-                "a URDF is a tree: each link has one parent, up to one root",
+            let message = format!(
+                "link `{}` is not connected with the root: its joints form a circle",
+                name(lost)
             );
+            let help = "a URDF is a tree: each link has one parent, up to one root";
+            findings.error(Code::ReferenceCycle, tag(elements[lost]), message, help);
         }
     }
     links

@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
-use appell_spec::{Code, Diagnostic, Severity};
+use appell_spec::{Code, Diagnostic, Severity, did_you_mean, shown};
 use roxmltree::{Attribute, Document, Node};
 
 /// Places in the text.
@@ -219,12 +219,9 @@ pub(crate) fn numbers(findings: &Findings, attribute: &Attribute<'_, '_>) -> Opt
         match word.parse::<f64>() {
             Ok(number) if number.is_finite() => numbers.push(number),
             _ => {
-                findings.error(
-                    Code::WrongType,
-                    attribute.range_value(),
-                    format!("`{}` is not a number", appell_spec::shown(word)),
-                    instead(word),
-                );
+                let message = format!("`{}` is not a number", shown(word));
+                let help = instead(word);
+                findings.error(Code::WrongType, attribute.range_value(), message, help);
                 return None;
             }
         }
@@ -262,14 +259,42 @@ pub(crate) fn exactly<const N: usize>(
             &format!("here are {count}")
         };
         let plural = if N == 1 { "number" } else { "numbers" };
-        findings.error(
-            Code::WrongType,
-            attribute.range_value(),
-            format!("`{}` has {count} of {N} {plural}", attribute.name()),
-            format!("{what} has {N} {plural}; {is}"),
-        );
+        let message = format!("`{}` has {count} of {N} {plural}", attribute.name());
+        let help = format!("{what} has {N} {plural}; {is}");
+        findings.error(Code::WrongType, attribute.range_value(), message, help);
         None
     })
+}
+
+/// A number of an attribute of an element.
+pub(crate) fn number(findings: &Findings, element: Element<'_>, key: &str) -> Option<f64> {
+    let given = element.attribute_node(key)?;
+    exactly::<1>(findings, &given, &format!("`{key}`")).map(|[number]| number)
+}
+
+/// A name that nothing has: the known one that was probably meant, or else some other help.
+pub(crate) fn no_such<'a>(
+    what: &str,
+    name: &str,
+    at: Span,
+    known: impl IntoIterator<Item = &'a str>,
+    otherwise: &str,
+) -> Diagnostic {
+    let message = format!("there is no {what} `{}`", shown(name));
+    let help = did_you_mean(name, known, || otherwise.to_owned());
+    Diagnostic::error(Code::UnknownReference, message)
+        .at(at, "")
+        .help(help)
+}
+
+/// A type that elements of a kind do not have.
+pub(crate) fn no_type(elements: &str, word: &str, at: Span, types: &[&str]) -> Diagnostic {
+    let message = format!("there are no {elements} of type `{}`", shown(word));
+    let known = types.iter().copied();
+    let help = did_you_mean(word, known, || format!("types are {}", types.join(", ")));
+    Diagnostic::error(Code::UnknownWord, message)
+        .at(at, "")
+        .help(help)
 }
 
 /// The contents of an element.

@@ -1,6 +1,6 @@
 //! Changes of MJCF files: the bytes that they touch, and the numbers that they make.
 
-use appell_robots::{Amount, Change, Corrected, Failure, JointNumber, Options, corrected, import};
+use appell_robots::{Amount, Change, Corrected, Failure, Number, Options, corrected, import};
 
 const LEG: &str = r#"<?xml version="1.0"?>
 <mujoco model="leg">
@@ -54,12 +54,8 @@ fn replaces(changes: &[Change], parts: &[(&str, &str)]) {
     assert_eq!(text, expected, "{changes:?}");
 }
 
-fn joint(joint: &str, attribute: JointNumber, amount: Amount) -> Change {
-    Change::Joint {
-        joint: joint.to_owned(),
-        attribute,
-        amount,
-    }
+fn joint(joint: &str, attribute: Number, amount: Amount) -> Change {
+    Change::number(joint, attribute, amount)
 }
 
 #[test]
@@ -79,17 +75,11 @@ fn without_changes_the_bytes_stay() {
     let windows = LEG.replace('\n', "\r\n");
     assert_eq!(change(&windows, &[]).unwrap().text, windows);
     let nothing = [
-        joint("hip", JointNumber::Damping, Amount::Add(0.0)),
-        joint("hip", JointNumber::Armature, Amount::Times(1.0)),
-        Change::Mass {
-            body: "shank".to_owned(),
-            amount: Amount::Times(1.0),
-        },
+        joint("hip", Number::Damping, Amount::Add(0.0)),
+        joint("hip", Number::Armature, Amount::Times(1.0)),
+        Change::number("shank", Number::Mass, Amount::Times(1.0)),
         Change::Gravity([0.0, 0.0, -9.81]),
-        Change::Kp {
-            actuator: "hip_servo".to_owned(),
-            amount: Amount::To(50.0),
-        },
+        Change::number("hip_servo", Number::Kp, Amount::To(50.0)),
     ];
     replaces(&nothing, &[]);
 }
@@ -97,9 +87,9 @@ fn without_changes_the_bytes_stay() {
 #[test]
 fn numbers_of_joints_are_written_at_the_joint() {
     let twice = [
-        joint("hip", JointNumber::Damping, Amount::Times(2.0)),
-        joint("hip", JointNumber::Damping, Amount::Add(0.1)),
-        joint("hip", JointNumber::Armature, Amount::To(0.02)),
+        joint("hip", Number::Damping, Amount::Times(2.0)),
+        joint("hip", Number::Damping, Amount::Add(0.1)),
+        joint("hip", Number::Armature, Amount::To(0.02)),
     ];
     let hip = "armature='0.01' />";
     replaces(&twice, &[(hip, "armature='0.02' damping=\"1.1\" />")]);
@@ -112,16 +102,17 @@ fn numbers_of_joints_are_written_at_the_joint() {
     let springs = [spring(1.0, 0.0), spring(1.0, 1.0)];
     let spring = "armature='0.01' stiffness=\"2\" springref=\"28.6478897565\" />";
     replaces(&springs, &[(hip, spring)]);
-    let reading = Change::Reading {
-        joint: "hip".to_owned(),
-        bias: -std::f64::consts::PI / 180.0,
-    };
+    let reading = Change::number(
+        "hip",
+        Number::Reading,
+        Amount::Add(-std::f64::consts::PI / 180.0),
+    );
     let moved = [
         (hip, "armature='0.01' ref=\"-1\" />"),
         ("range=\"-90 90\"", "range=\"-91 89\""),
     ];
     replaces(&[reading], &moved);
-    let below = joint("knee", JointNumber::Frictionloss, Amount::Add(-0.2));
+    let below = joint("knee", Number::Frictionloss, Amount::Add(-0.2));
     let better = change(LEG, &[below]).unwrap();
     assert!(better.text.contains(r#"name="knee" frictionloss="0"/>"#));
     assert!(
@@ -136,18 +127,12 @@ fn numbers_of_joints_are_written_at_the_joint() {
 fn inertias_are_changed_in_their_own_axes() {
     let thigh = "thigh".to_owned();
     let changes = [
-        Change::Mass {
-            body: thigh.clone(),
-            amount: Amount::To(1.5),
-        },
+        Change::number(thigh.clone(), Number::Mass, Amount::To(1.5)),
         Change::Centre {
             body: thigh.clone(),
             amounts: [Amount::Add(0.01), Amount::Add(0.0), Amount::Times(2.0)],
         },
-        Change::Inertia {
-            body: thigh,
-            factor: 1.5,
-        },
+        Change::number(thigh, Number::Inertia, Amount::Times(1.5)),
     ];
     let before = r#"<inertial pos="0 0 -0.1" mass="1.3" diaginertia="0.006 0.005 0.002"/>"#;
     let after = r#"<inertial pos="0.01 0 -0.2" mass="1.5" diaginertia="0.009 0.0075 0.003"/>"#;
@@ -157,10 +142,7 @@ fn inertias_are_changed_in_their_own_axes() {
 #[test]
 fn bodies_that_are_fixed_together_have_one_inertia() {
     // Shank 0.3 kg at 0.1 m, foot 0.1 kg at 0.2 m: 0.4 kg at 0.125 m.
-    let heavier = Change::Mass {
-        body: "shank".to_owned(),
-        amount: Amount::Times(2.0),
-    };
+    let heavier = Change::number("shank", Number::Mass, Amount::Times(2.0));
     let better = change(LEG, &[heavier]).unwrap();
     let after = import("leg.xml", &better.text, &Options::default()).unwrap();
     assert!(after.spec.contains("mass = \"0.8 [kg]\""), "{}", after.spec);
@@ -173,10 +155,7 @@ fn bodies_that_are_fixed_together_have_one_inertia() {
         better.edits
     );
     // More than is left to the shank is taken from the foot as well.
-    let lighter = Change::Mass {
-        body: "shank".to_owned(),
-        amount: Amount::Times(0.2),
-    };
+    let lighter = Change::number("shank", Number::Mass, Amount::Times(0.2));
     let better = change(LEG, &[lighter]).unwrap();
     assert!(better.text.contains("mass=\"0.08\""), "{}", better.text);
     let emptied = r#"<inertial pos="0 0 0" mass="0" diaginertia="0 0 0"/>"#;
@@ -217,14 +196,8 @@ fn a_payload_is_a_body_of_its_own() {
 #[test]
 fn gains_are_those_of_the_actuator_and_not_of_its_class() {
     let (servo, unnamed) = ("hip_servo".to_owned(), "general_knee".to_owned());
-    let kp = |actuator: &String| Change::Kp {
-        actuator: actuator.clone(),
-        amount: Amount::Times(1.2),
-    };
-    let kv = |actuator: &String| Change::Kv {
-        actuator: actuator.clone(),
-        amount: Amount::Add(0.5),
-    };
+    let kp = |actuator: &String| Change::number(actuator.clone(), Number::Kp, Amount::Times(1.2));
+    let kv = |actuator: &String| Change::number(actuator.clone(), Number::Kv, Amount::Add(0.5));
     replaces(
         &[kp(&servo), kv(&servo), kp(&unnamed), kv(&unnamed)],
         &[
@@ -233,10 +206,7 @@ fn gains_are_those_of_the_actuator_and_not_of_its_class() {
             ("biasprm=\"0 -3 -0.2\"", "biasprm=\"0 -3.6 -0.7\""),
         ],
     );
-    let gain = |actuator: &str| Change::Gain {
-        actuator: actuator.to_owned(),
-        factor: 2.0,
-    };
+    let gain = |actuator: &str| Change::number(actuator, Number::Gain, Amount::Times(2.0));
     replaces(
         &[gain("hip_servo"), gain("knee_motor"), gain("general_knee")],
         &[
@@ -260,16 +230,10 @@ fn what_follows_from_the_inertias_of_the_file_stays_where_these_change() {
     </body></worldbody><actuator>
       <position name="servo" joint="elbow" kp="18" dampratio="0.5"/>
     </actuator></mujoco>"#;
-    let stiffer = Change::Kp {
-        actuator: "servo".to_owned(),
-        amount: Amount::To(20.0),
-    };
+    let stiffer = Change::number("servo", Number::Kp, Amount::To(20.0));
     let servo = text.replace("kp=\"18\" dampratio=\"0.5\"", "kp=\"20\" kv=\"6\"");
     assert_eq!(change(text, &[stiffer]).unwrap().text, servo);
-    let heavier = Change::Inertia {
-        body: "arm".to_owned(),
-        factor: 2.0,
-    };
+    let heavier = Change::number("arm", Number::Inertia, Amount::Times(2.0));
     let expected = text
         .replace("\"1 1 1\"", "\"2 2 2\"")
         .replace(
@@ -288,10 +252,7 @@ fn scaled_masses_and_those_of_geoms_become_inertials() {
     <body name="hand" pos="0 0 1"><joint axis="0 1 0"/><geom size="0.1" mass="0.5"/></body>
   </body></worldbody>
 </mujoco>"#;
-    let heavier = Change::Mass {
-        body: "hand".to_owned(),
-        amount: Amount::Add(1.0),
-    };
+    let heavier = Change::number("hand", Number::Mass, Amount::Add(1.0));
     let better = change(text, &[heavier]).unwrap().text;
     let compiler = "<compiler inertiafromgeom=\"auto\" settotalmass=\"4\"/>";
     assert!(better.contains(compiler), "{better}");
@@ -302,14 +263,8 @@ fn scaled_masses_and_those_of_geoms_become_inertials() {
 
 #[test]
 fn what_a_shortcut_cannot_say_is_said_by_a_general_actuator() {
-    let bias = |actuator: &str| Change::Bias {
-        actuator: actuator.to_owned(),
-        add: 0.3,
-    };
-    let lag = |actuator: &str| Change::Lag {
-        actuator: actuator.to_owned(),
-        seconds: 0.02,
-    };
+    let bias = |actuator: &str| Change::number(actuator, Number::Bias, Amount::Add(0.3));
+    let lag = |actuator: &str| Change::number(actuator, Number::Lag, Amount::To(0.02));
     replaces(
         &[bias("hip_servo"), lag("knee_motor"), bias("general_knee")],
         &[
@@ -336,10 +291,7 @@ fn what_a_shortcut_cannot_say_is_said_by_a_general_actuator() {
 
 #[test]
 fn delays_are_whole_steps_where_these_are_near() {
-    let delay = |seconds| Change::Delay {
-        actuator: "hip_servo".to_owned(),
-        seconds,
-    };
+    let delay = |seconds| Change::number("hip_servo", Number::Delay, Amount::To(seconds));
     for (seconds, written) in [
         (0.0201, "delay=\"0.02\" nsample=\"40\""),
         (0.0012, "delay=\"0.0012\" nsample=\"3\" interp=\"linear\""),
@@ -361,10 +313,7 @@ fn limits_of_forces_are_those_of_the_file_and_the_new_ones() {
         actuator: "hip_servo".to_owned(),
         range,
     };
-    let times = Change::ForceRange {
-        actuator: "hip_servo".to_owned(),
-        amount: Amount::Times(0.5),
-    };
+    let times = Change::number("hip_servo", Number::ForceRange, Amount::Times(0.5));
     for (change, range) in [
         (limit([-8.0, 30.0]), "-8 20"),
         (limit([-30.0, 5.0]), "-20 5"),
@@ -386,7 +335,7 @@ fn what_actuators_add_to_a_joint_counts() {
             "joint=\"hip\" gear=\"3\" armature=\"0.004\"",
         )
         .replace(geared, "");
-    let armature = |amount| joint("hip", JointNumber::Armature, amount);
+    let armature = |amount| joint("hip", Number::Armature, amount);
     let after = |amount| change(&text, &[armature(amount)]).unwrap().text;
     let more = text.replace("armature='0.01'", "armature='0.014'");
     assert_eq!(after(Amount::To(0.05)), more);
@@ -395,10 +344,7 @@ fn what_actuators_add_to_a_joint_counts() {
         .replace("armature=\"0.004\"", "armature=\"0.002\"");
     assert_eq!(after(Amount::To(0.018)), less);
     // A larger gear leaves the inertia as it is.
-    let gear = Change::Gear {
-        actuator: "knee_motor".to_owned(),
-        amount: Amount::To(6.0),
-    };
+    let gear = Change::number("knee_motor", Number::Gear, Amount::To(6.0));
     let geared = text.replace(
         "gear=\"3\" armature=\"0.004\"",
         "gear=\"6\" armature=\"0.001\"",
@@ -409,10 +355,11 @@ fn what_actuators_add_to_a_joint_counts() {
 #[test]
 fn a_reading_moves_without_the_bounds_of_commands() {
     let text = LEG.replace("joint=\"hip\"/>", "joint=\"hip\" inheritrange=\"0.5\"/>");
-    let reading = Change::Reading {
-        joint: "hip".to_owned(),
-        bias: std::f64::consts::PI / 180.0,
-    };
+    let reading = Change::number(
+        "hip",
+        Number::Reading,
+        Amount::Add(std::f64::consts::PI / 180.0),
+    );
     let expected = text
         .replace("range=\"-90 90\"", "range=\"-89 91\"")
         .replace("armature='0.01' />", "armature='0.01' ref=\"1\" />")
@@ -425,10 +372,11 @@ fn a_reading_moves_without_the_bounds_of_commands() {
 
 #[test]
 fn backlash_is_a_second_joint_with_its_state_in_keyframes() {
-    let play = Change::Play {
-        joint: "hip".to_owned(),
-        gap: 2.0 * std::f64::consts::PI / 180.0,
-    };
+    let play = Change::number(
+        "hip",
+        Number::Play,
+        Amount::Add(2.0 * std::f64::consts::PI / 180.0),
+    );
     let hip = "armature='0.01' /> <!-- quick -->";
     let second = "armature='0.01' />\n      <joint name=\"hip_play\" range=\"-1 1\" solreflimit=\"0.002 1\" \
                   damping=\"0\"/> <!-- quick -->";
@@ -474,18 +422,12 @@ fn remarks_are_comments_at_the_head() {
 
 #[test]
 fn what_cannot_be_changed_is_refused_with_its_place() {
-    let mass = |body: &str| Change::Mass {
-        body: body.to_owned(),
-        amount: Amount::To(1.0),
-    };
+    let mass = |body: &str| Change::number(body, Number::Mass, Amount::To(1.0));
     let refusal = |text: &str, change: Change| self::change(text, &[change]).unwrap_err();
     let unknown = refusal(LEG, mass("shanc"));
     assert!(unknown.contains("there is no body `shanc`"), "{unknown}");
     assert!(unknown.contains("shank"), "{unknown}");
-    let kp = Change::Kp {
-        actuator: "knee_motor".to_owned(),
-        amount: Amount::To(2.0),
-    };
+    let kp = Change::number("knee_motor", Number::Kp, Amount::To(2.0));
     let gain = refusal(LEG, kp);
     assert!(gain.contains("`motor` `knee_motor` has no `kp`"), "{gain}");
     let other = refusal("<sdf/>", mass("b"));
@@ -495,7 +437,7 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
         "<replicate count=\"2\"><body name=\"toe\"><joint name=\"toe\"/><geom size=\"0.01\"/></body></replicate>\
          <joint name=\"knee\"",
     );
-    let copy = joint("toe1", JointNumber::Damping, Amount::To(1.0));
+    let copy = joint("toe1", Number::Damping, Amount::To(1.0));
     let copy = refusal(&copies, copy);
     assert!(copy.contains("is a copy of `replicate`"), "{copy}");
 }
@@ -511,7 +453,7 @@ fn an_included_file_stays_and_its_includer_changes() {
         "shank.xml" => Ok(shank.as_bytes().to_vec()),
         _ => Err("not here".to_owned()),
     };
-    let damped = |name| joint(name, JointNumber::Damping, Amount::To(0.5));
+    let damped = |name| joint(name, Number::Damping, Amount::To(0.5));
     let hip = corrected("leg.xml", whole, &[damped("hip")], &[], &others).unwrap();
     let expected = whole.replace("\"0 1 0\"/>", "\"0 1 0\" damping=\"0.5\"/>");
     assert_eq!(hip.text, expected);

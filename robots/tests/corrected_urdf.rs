@@ -1,6 +1,6 @@
 //! Changes of URDF files: the bytes that they touch.
 
-use appell_robots::{Amount, Change, Failure, JointNumber, Options, corrected, import};
+use appell_robots::{Amount, Change, Failure, Number, Options, corrected, import};
 
 const ARM: &str = r#"<?xml version="1.0"?>
 <robot name="arm">
@@ -49,19 +49,12 @@ fn replaces(changes: &[Change], parts: &[(&str, &str)]) {
     assert_eq!(change(changes).unwrap(), expected, "{changes:?}");
 }
 
-fn joint(name: &str, attribute: JointNumber, amount: Amount) -> Change {
-    Change::Joint {
-        joint: name.to_owned(),
-        attribute,
-        amount,
-    }
+fn joint(name: &str, attribute: Number, amount: Amount) -> Change {
+    Change::number(name, attribute, amount)
 }
 
 fn mass(body: &str, amount: Amount) -> Change {
-    Change::Mass {
-        body: body.to_owned(),
-        amount,
-    }
+    Change::number(body, Number::Mass, amount)
 }
 
 #[test]
@@ -74,12 +67,9 @@ fn numbers_are_replaced_where_they_stand() {
             body: "upper".to_owned(),
             amounts: [Amount::Add(0.01), Amount::Add(0.0), Amount::Add(0.0)],
         },
-        Change::Inertia {
-            body: "upper".to_owned(),
-            factor: 1.5,
-        },
-        joint("shoulder", JointNumber::Damping, Amount::Add(0.1)),
-        joint("shoulder", JointNumber::Frictionloss, Amount::Add(0.2)),
+        Change::number("upper", Number::Inertia, Amount::Times(1.5)),
+        joint("shoulder", Number::Damping, Amount::Add(0.1)),
+        joint("shoulder", Number::Frictionloss, Amount::Add(0.2)),
     ];
     replaces(
         &changes,
@@ -102,8 +92,8 @@ fn what_is_missing_is_inserted() {
     let limit = "<limit lower=\"-1\" upper=\"1\" effort=\"5\" velocity=\"3\"/>";
     let dynamics = format!("{limit}\n    <dynamics damping=\"0.3\" friction=\"0.1\"/>");
     let changes = [
-        joint("wrist", JointNumber::Frictionloss, Amount::Add(0.1)),
-        joint("wrist", JointNumber::Damping, Amount::To(0.3)),
+        joint("wrist", Number::Frictionloss, Amount::Add(0.1)),
+        joint("wrist", Number::Damping, Amount::To(0.3)),
     ];
     replaces(&changes, &[(limit, &dynamics)]);
     let payload = Change::Payload {
@@ -132,7 +122,7 @@ fn links_that_are_fixed_together_have_one_inertia() {
 
 #[test]
 fn what_a_urdf_cannot_express_is_refused() {
-    let armature = joint("wrist", JointNumber::Armature, Amount::Add(0.1));
+    let armature = joint("wrist", Number::Armature, Amount::Add(0.1));
     let refusal = change(&[armature]).unwrap_err();
     assert!(
         refusal.contains("URDF cannot express this change"),

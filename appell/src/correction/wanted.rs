@@ -6,7 +6,7 @@ use std::path::Path;
 use appell_gap::diagnose::{Changes, Refitted};
 use appell_report::text::{number, with_unit};
 use appell_robots::{
-    ActuatorName, Amount, Change, Dictionary, Format, JointNumber, Letters, Lock, Options,
+    ActuatorName, Amount, Change, Dictionary, Format, Letters, Lock, Number, Options,
 };
 use appell_spec::units;
 use toml::de::{DeTable, DeValue};
@@ -14,22 +14,28 @@ use toml::de::{DeTable, DeValue};
 use crate::gap_report::{Found, Hypothesis};
 use crate::{Error, robot};
 
-/// Attributes of joints.
-const JOINT_NUMBERS: [(&str, JointNumber); 6] = [
-    ("damping", JointNumber::Damping),
-    ("frictionloss", JointNumber::Frictionloss),
-    ("armature", JointNumber::Armature),
-    ("stiffness", JointNumber::Stiffness),
-    ("springref", JointNumber::Springref),
-    ("ref", JointNumber::Ref),
+/// Attributes of joints, bodies and actuators.
+const NUMBERS: [(&str, Number); 12] = [
+    ("damping", Number::Damping),
+    ("frictionloss", Number::Frictionloss),
+    ("armature", Number::Armature),
+    ("stiffness", Number::Stiffness),
+    ("springref", Number::Springref),
+    ("ref", Number::Ref),
+    ("mass", Number::Mass),
+    ("inertia", Number::Inertia),
+    ("kp", Number::Kp),
+    ("kv", Number::Kv),
+    ("gear", Number::Gear),
+    ("forcerange", Number::ForceRange),
 ];
 /// Effects that add to a number of a joint: the number, and the names of their sizes.
-const AT_JOINTS: [(&str, JointNumber, &[&str]); 4] = [
-    ("coulomb_friction", JointNumber::Frictionloss, &["force"]),
-    ("viscous_friction", JointNumber::Damping, &["coefficient"]),
-    ("added_inertia", JointNumber::Armature, &["inertia", "mass"]),
+const AT_JOINTS: [(&str, Number, &[&str]); 4] = [
+    ("coulomb_friction", Number::Frictionloss, &["force"]),
+    ("viscous_friction", Number::Damping, &["coefficient"]),
+    ("added_inertia", Number::Armature, &["inertia", "mass"]),
     // The nearest expression of friction that depends on the rate.
-    ("stribeck_friction", JointNumber::Frictionloss, &["sliding"]),
+    ("stribeck_friction", Number::Frictionloss, &["sliding"]),
 ];
 /// The site of an effect at all joints or all actuators.
 const DRIVES: &str = "drives";
@@ -135,7 +141,6 @@ impl<'h> Wanted<'h> {
 
     fn refitted(&self, one: &Refitted) -> Option<Change> {
         let (element, attribute) = element_of(&one.name)?;
-        let to = Amount::To(one.value);
         let component = AXES.iter().position(|axis| {
             let last = attribute.strip_prefix("com.");
             last.or_else(|| attribute.strip_prefix("gravity.")) == Some(*axis)
@@ -144,55 +149,28 @@ impl<'h> Wanted<'h> {
         if of_body && self.merged.contains(element) {
             return None;
         }
-        let element = element.to_owned();
-        Some(match attribute {
-            "mass" => Change::Mass {
-                body: element,
-                amount: to,
-            },
-            "inertia" => Change::Inertia {
-                body: element,
-                factor: one.value,
-            },
-            "com.x" | "com.y" | "com.z" => {
-                let mut amounts = [STAYS; 3];
-                amounts[component?] = to;
-                Change::Centre {
-                    body: element,
-                    amounts,
-                }
-            }
-            "kp" => Change::Kp {
-                actuator: element,
-                amount: to,
-            },
-            "kv" => Change::Kv {
-                actuator: element,
-                amount: to,
-            },
-            "gear" => Change::Gear {
-                actuator: element,
-                amount: to,
-            },
-            "forcerange" => Change::ForceRange {
-                actuator: element,
-                // Bounds of different size have a common factor.
-                amount: match one.unit.as_str() {
-                    "1" => Amount::Times(one.value),
-                    _ => to,
-                },
-            },
-            _ if element == "option" => Change::Gravity(self.gravity()),
-            _ => {
-                let mut known = JOINT_NUMBERS.iter();
-                let (_, number) = known.find(|(word, _)| *word == attribute)?;
-                Change::Joint {
-                    joint: element,
-                    attribute: *number,
-                    amount: to,
-                }
-            }
-        })
+        if let Some(component) = component.filter(|_| of_body) {
+            let mut amounts = [STAYS; 3];
+            amounts[component] = Amount::To(one.value);
+            let body = element.to_owned();
+            return Some(Change::Centre { body, amounts });
+        }
+        if element == "option" && attribute.starts_with("gravity") {
+            return Some(Change::Gravity(self.gravity()));
+        }
+        let (_, number) = NUMBERS.iter().find(|(word, _)| *word == attribute)?;
+        // An inertia is fitted by a factor, and so are bounds of different size.
+        let is_factor = match number {
+            Number::Inertia => true,
+            Number::ForceRange => one.unit == "1",
+            _ => false,
+        };
+        let amount = if is_factor {
+            Amount::Times(one.value)
+        } else {
+            Amount::To(one.value)
+        };
+        Some(Change::number(element, *number, amount))
     }
 
     /// The centre of mass of a body with all that is fixed to it, in its frame.
@@ -346,11 +324,8 @@ impl<'h> Wanted<'h> {
         if let Some((_, attribute, sizes)) = at_joints {
             let values = sizes.iter().map(|size| self.at_sites(effect, site, size));
             let values = values.flatten().map(|(site, value)| {
-                Some(Change::Joint {
-                    joint: self.joint(&site)?,
-                    attribute: *attribute,
-                    amount: Amount::Add(value),
-                })
+                let joint = self.joint(&site)?;
+                Some(Change::number(joint, *attribute, Amount::Add(value)))
             });
             return some(values.collect());
         }
@@ -373,14 +348,14 @@ impl<'h> Wanted<'h> {
                     relaxed_at: value("preload").unwrap_or(0.0) / stiffness,
                 }
             }
-            "backlash" => Change::Play {
-                joint: self.joint(site)?,
-                gap: 2.0 * value("half_gap")?,
-            },
-            "sensor_bias" => Change::Reading {
-                joint: self.measured(effect, site)?,
-                bias: value("bias")?,
-            },
+            "backlash" => {
+                let gap = Amount::Add(2.0 * value("half_gap")?);
+                Change::number(self.joint(site)?, Number::Play, gap)
+            }
+            "sensor_bias" => {
+                let joint = self.measured(effect, site)?;
+                Change::number(joint, Number::Reading, Amount::Add(value("bias")?))
+            }
             "payload" => {
                 let mass = value("mass")?;
                 let away = AXES.map(|axis| value(axis).unwrap_or_default());
@@ -424,28 +399,28 @@ impl<'h> Wanted<'h> {
             let changes = values.map(|(site, value)| Some(change(self.actuator(&site)?, value)));
             changes.collect::<Vec<Option<Change>>>()
         };
+        let numbers =
+            |size: &str, number: Number, amount: &dyn Fn(&ActuatorName, f64) -> Amount| {
+                by_actuators(size, &|own, value| {
+                    Change::number(&own.name, number, amount(own, value))
+                })
+            };
         let changes = match kind {
-            "actuator_gain" => by_actuators("gain", &|own, gain| Change::Gain {
-                actuator: own.name.clone(),
-                factor: 1.0 + gain,
-            }),
+            "actuator_gain" => numbers("gain", Number::Gain, &|_, gain| Amount::Times(1.0 + gain)),
             // Of a servo the bias of its force, of all others that of the command.
-            "actuator_bias" => by_actuators("bias", &|own, bias| Change::Bias {
-                actuator: own.name.clone(),
-                add: if own.follows_motion {
+            "actuator_bias" => numbers("bias", Number::Bias, &|own, bias| {
+                Amount::Add(if own.follows_motion {
                     bias / self.gear(own)
                 } else {
                     bias * own.gain
-                },
+                })
             }),
             // Beside a lag or a delay that the file has.
-            "actuator_lag" => by_actuators("time_constant", &|own, more| Change::Lag {
-                actuator: own.name.clone(),
-                seconds: own.lag + more,
+            "actuator_lag" => numbers("time_constant", Number::Lag, &|own, more| {
+                Amount::To(own.lag + more)
             }),
-            "actuator_delay" => by_actuators("delay", &|own, more| Change::Delay {
-                actuator: own.name.clone(),
-                seconds: own.delay + more,
+            "actuator_delay" => numbers("delay", Number::Delay, &|own, more| {
+                Amount::To(own.delay + more)
             }),
             // Likewise.
             "actuator_saturation" | "saturation" => by_actuators("limit", &|own, limit| {

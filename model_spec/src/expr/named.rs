@@ -34,72 +34,34 @@ pub enum Response {
     DriveForce(SpeedId),
 }
 
-/// The kinds of kinematic quantities and forces, as they are called in a spec.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Word {
+words! {
+    /// The kinds of kinematic quantities and forces, as they are called in a spec, with their syntax.
+    Word, &'static str;
     /// `position(P, x)`, `position(P, x, frame)`
-    Position,
+    Position "position" "position(P, x)"
     /// `velocity(P, x)`, `velocity(P, x, frame)`
-    Velocity,
+    Velocity "velocity" "velocity(P, x)"
     /// `speed(P)`
-    Speed,
+    Speed "speed" "speed(P)"
     /// `angular_velocity(frame, z)`, `angular_velocity(frame, z, other)`
-    AngularVelocity,
+    AngularVelocity "angular_velocity" "angular_velocity(wheel, z)"
     /// `acceleration(P, x)`, `acceleration(P, x, frame)`
-    Acceleration,
+    Acceleration "acceleration" "acceleration(P, x)"
     /// `angular_acceleration(frame, z)`, `angular_acceleration(frame, z, other)`
-    AngularAcceleration,
+    AngularAcceleration "angular_acceleration" "angular_acceleration(wheel, z)"
     /// `reaction(constraint, x)`, `reaction(constraint, x, frame)`, `reaction(constraint)`
-    Reaction,
+    Reaction "reaction" "reaction(rolling, x)"
     /// `normal_force(contact)`
-    NormalForce,
+    NormalForce "normal_force" "normal_force(rolling)"
     /// `force(load, x)`, `force(load, x, frame)`, `force(load)`
-    Force,
+    Force "force" "force(push, x)"
     /// `drive_force(omega)`
-    DriveForce,
+    DriveForce "drive_force" "drive_force(omega)"
 }
 
 impl Word {
-    /// Every kind with its name and syntax.
-    pub const ALL: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::Position, "position", "position(P, x)"),
-        (Self::Velocity, "velocity", "velocity(P, x)"),
-        (Self::Speed, "speed", "speed(P)"),
-        (
-            Self::AngularVelocity,
-            "angular_velocity",
-            "angular_velocity(wheel, z)",
-        ),
-        (Self::Acceleration, "acceleration", "acceleration(P, x)"),
-        (
-            Self::AngularAcceleration,
-            "angular_acceleration",
-            "angular_acceleration(wheel, z)",
-        ),
-        (Self::Reaction, "reaction", "reaction(rolling, x)"),
-        (Self::NormalForce, "normal_force", "normal_force(rolling)"),
-        (Self::Force, "force", "force(push, x)"),
-        (Self::DriveForce, "drive_force", "drive_force(omega)"),
-    ];
-
-    /// The kind of a name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
-    }
-
-    /// Name in a spec.
-    pub fn name(self) -> &'static str {
-        Self::ALL
-            .iter()
-            .find(|row| row.0 == self)
-            .map_or("", |row| row.1)
-    }
-
     /// Its syntax.
     pub fn example(self) -> &'static str {
-        Self::ALL
-            .iter()
-            .find(|row| row.0 == self)
-            .map_or("", |row| row.2)
+        Self::ALL[self as usize].2
     }
 }

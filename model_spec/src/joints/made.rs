@@ -1,11 +1,14 @@
 //! The expansion of each kind of joint.
 
-use crate::ast::{ItemAst, ValueAst};
+use std::collections::BTreeSet;
+
+use crate::ast::{ItemAst, SpecAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::Span;
 use crate::language::JointWord;
 use crate::limits::MAX_SENTENCE;
 
+use super::SECTION;
 use super::direction::{AXES, Direction, Turn, word};
 use super::piece::Piece;
 use super::quantities::{self, JointQuantity};
@@ -26,20 +29,27 @@ pub(super) struct Made {
     pub(super) table: Piece,
 }
 
-/// The frames and points of a spec by name, those of joints included.
-pub(super) trait Places {
-    /// Whether there is such a frame.
-    fn has_frame(&self, name: &str) -> bool;
-    /// Whether there is such a point.
-    fn has_point(&self, name: &str) -> bool;
+/// The names of the frames and points of a spec, those of joints included.
+pub(super) struct Known<'a> {
+    frames: BTreeSet<&'a str>,
+    points: BTreeSet<&'a str>,
+}
+
+impl<'a> Known<'a> {
+    pub(super) fn new(ast: &'a SpecAst) -> Self {
+        let names = |section: &str| -> BTreeSet<&'a str> {
+            let own = ast.items(section).iter().chain(ast.items(SECTION));
+            own.map(|item| item.name.value.as_str()).collect()
+        };
+        Self {
+            frames: names("frames"),
+            points: names("points"),
+        }
+    }
 }
 
 /// The items to which a joint is expanded.
-pub(super) fn made(
-    text: &str,
-    item: &ItemAst,
-    places: &dyn Places,
-) -> Result<Vec<Made>, Diagnostic> {
+pub(super) fn made(text: &str, item: &ItemAst, known: &Known<'_>) -> Result<Vec<Made>, Diagnostic> {
     let Some(word) = quantities::word(item) else {
         return Ok(Vec::new());
     };
@@ -63,7 +73,7 @@ pub(super) fn made(
     joint.coordinates();
     let axis = Direction::new(text, item, "axis")?;
     let second = Direction::new(text, item, "second_axis")?;
-    joint.place(axis.as_ref(), second.as_ref(), places)?;
+    joint.place(axis.as_ref(), second.as_ref(), known)?;
     joint.speeds();
     Ok(joint.made)
 }
@@ -254,13 +264,13 @@ impl Joint<'_> {
         &mut self,
         axis: Option<&Direction>,
         second: Option<&Direction>,
-        places: &dyn Places,
+        known: &Known<'_>,
     ) -> Result<(), Diagnostic> {
         let name = self.name().to_owned();
         let mut parent = self
             .verbatim("parent")
             .unwrap_or_else(|| Piece::new("ground").quoted());
-        let from = self.from(places)?;
+        let from = self.from(known)?;
         let carrier = parent.clone();
         let mut turns = self.constant_turns();
         // With constant rotations, a planar joint moves in an intermediate frame.
@@ -435,7 +445,7 @@ impl Joint<'_> {
     }
 
     /// The point relative to which the joint is positioned.
-    fn from(&self, places: &dyn Places) -> Result<Piece, Diagnostic> {
+    fn from(&self, known: &Known<'_>) -> Result<Piece, Diagnostic> {
         if let Some(from) = self.verbatim("from") {
             return Ok(from);
         }
@@ -443,10 +453,10 @@ impl Joint<'_> {
         let Some(parent) = self.item.text("parent") else {
             return Ok(origin);
         };
-        if places.has_point(parent.value) {
+        if known.points.contains(parent.value) {
             return Ok(Piece::new(parent.value).quoted().from(&parent.span));
         }
-        if parent.value == "ground" || !places.has_frame(parent.value) {
+        if parent.value == "ground" || !known.frames.contains(parent.value) {
             return Ok(origin);
         }
         let message = format!("the joint `{}` has no `from`", self.name());

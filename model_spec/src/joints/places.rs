@@ -21,8 +21,6 @@ fn value(value: &mut ValueAst, to: &dyn Fn(&Span) -> Span) {
         | ValueAst::Unit(_) => {}
         ValueAst::Numbers(numbers) => spans(numbers, to),
         ValueAst::Names(names) => spans(names, to),
-        ValueAst::Pair(names) => spans(names, to),
-        ValueAst::Four(names) => spans(names.as_mut(), to),
         ValueAst::Expression(one) => expression(one, to),
         ValueAst::Components(all) => all.iter_mut().for_each(|one| expression(one, to)),
         ValueAst::Matrix(rows) => rows

@@ -50,6 +50,11 @@ struct Tree {
     end: usize,
 }
 
+/// The height of the highest of several expressions.
+fn highest(trees: &[Tree]) -> usize {
+    trees.iter().map(|tree| tree.height).max().unwrap_or(0)
+}
+
 struct Parser<'s, 'a> {
     source: &'s Source<'a>,
     tokens: Vec<Located<'a>>,
@@ -257,30 +262,35 @@ impl<'a> Parser<'_, 'a> {
 
     fn named(&mut self, first: Located<'a>, word: Word) -> Result<Tree, Diagnostic> {
         self.expect('(', word.name())?;
-        let mut names = Vec::new();
-        loop {
-            let inner = self.next();
+        let names = self.list(|parser| {
+            let inner = parser.next();
             let Token::Name(name) = inner.token else {
                 let found = inner.token.words();
-                return Err(self
-                    .error(
-                        inner,
-                        format!("`{}` takes names, found {found}", word.name()),
-                    )
-                    .help(format!("write `{}`", word.example())));
+                let message = format!("`{}` takes names, found {found}", word.name());
+                let help = format!("write `{}`", word.example());
+                return Err(parser.error(inner, message).help(help));
             };
-            names.push(Spanned {
+            Ok(Spanned {
                 value: name.to_owned(),
-                span: self.source.span(inner.start..inner.end),
-            });
-            if self.peek().token != Token::Symbol(',') {
-                break;
-            }
-            self.next();
-        }
+                span: parser.source.span(inner.start..inner.end),
+            })
+        })?;
         let close = self.expect(')', "the names")?;
         let kind = ExprAstKind::Named(word, names);
         self.node(kind, first.start, close.end, 1)
+    }
+
+    /// Several parts, separated by commas.
+    fn list<T>(
+        &mut self,
+        part: impl Fn(&mut Self) -> Result<T, Diagnostic>,
+    ) -> Result<Vec<T>, Diagnostic> {
+        let mut parts = vec![part(self)?];
+        while self.peek().token == Token::Symbol(',') {
+            self.next();
+            parts.push(part(self)?);
+        }
+        Ok(parts)
     }
 
     fn rate(&mut self, first: Located<'a>) -> Result<Tree, Diagnostic> {
@@ -306,34 +316,23 @@ impl<'a> Parser<'_, 'a> {
 
     fn call(&mut self, first: Located<'a>, function: Function) -> Result<Tree, Diagnostic> {
         let open = self.expect('(', "the function")?;
-        let mut arguments = Vec::new();
-        let mut height = 0;
-        if self.peek().token != Token::Symbol(')') {
-            loop {
-                let argument = self.expression(0)?;
-                height = height.max(argument.height);
-                arguments.push(argument.expr);
-                if self.peek().token != Token::Symbol(',') {
-                    break;
-                }
-                self.next();
-            }
-        }
+        let arguments = match self.peek().token {
+            Token::Symbol(')') => Vec::new(),
+            _ => self.list(|parser| parser.expression(0))?,
+        };
         let close = self.expect(')', "the arguments")?;
         let (name, arity) = (function.name(), function.arity());
-        if arguments.len() != arity {
+        let found = arguments.len();
+        if found != arity {
             let plural = if arity == 1 { "" } else { "s" };
-            return Err(Diagnostic::error(
-                Code::WrongArity,
-                format!(
-                    "`{name}` takes {arity} argument{plural}, found {}",
-                    arguments.len()
-                ),
-            )
-            .at(self.source.span(open.start..close.end), ""));
+            let message = format!("`{name}` takes {arity} argument{plural}, found {found}");
+            let place = self.source.span(open.start..close.end);
+            return Err(Diagnostic::error(Code::WrongArity, message).at(place, ""));
         }
-        let kind = ExprAstKind::Call(function, arguments);
-        self.node(kind, first.start, close.end, height + 1)
+        let height = 1 + highest(&arguments);
+        let arguments = arguments.into_iter().map(|tree| tree.expr);
+        let kind = ExprAstKind::Call(function, arguments.collect());
+        self.node(kind, first.start, close.end, height)
     }
 
     fn choice(&mut self, first: Located<'a>) -> Result<Tree, Diagnostic> {
@@ -351,17 +350,14 @@ impl<'a> Parser<'_, 'a> {
         self.expect(',', "the value if the comparison holds")?;
         let otherwise = self.expression(0)?;
         let close = self.expect(')', "the value elsewhere")?;
-        let height = [&left, &right, &then, &otherwise]
-            .iter()
-            .map(|tree| tree.height)
-            .max()
-            .unwrap_or(0);
+        let (compared, branches) = ([left, right], [then, otherwise]);
+        let height = 1 + highest(&compared).max(highest(&branches));
         let kind = ExprAstKind::Choice {
             relation: symbol,
-            compared: Box::new([left.expr, right.expr]),
-            branches: Box::new([then.expr, otherwise.expr]),
+            compared: Box::new(compared.map(|tree| tree.expr)),
+            branches: Box::new(branches.map(|tree| tree.expr)),
         };
-        self.node(kind, first.start, close.end, height + 1)
+        self.node(kind, first.start, close.end, height)
     }
 
     fn unknown_function(&self, at: Located<'_>, name: &str) -> Diagnostic {

@@ -46,13 +46,8 @@ impl Reader<'_> {
         };
         if table.len() > most {
             self.incomplete = true;
-            self.tell(
-                Diagnostic::error(
-                    Code::LimitExceeded,
-                    format!("`[{}]` has at most {most} items", section.name),
-                )
-                .at(key.span(), format!("{} items", table.len())),
-            );
+            let message = format!("`[{}]` has at most {most} items", section.name);
+            self.exceeded(key.span(), message, table.len(), "items");
         }
         let mut items = Vec::new();
         for (key, value) in in_text_order(table).into_iter().take(most) {
@@ -136,11 +131,7 @@ impl Reader<'_> {
     }
 
     pub(super) fn unknown_word(&mut self, message: String, at: Span, help: String) {
-        self.tell(
-            Diagnostic::error(Code::UnknownWord, message)
-                .at(at, "")
-                .help(help),
-        );
+        self.error(Code::UnknownWord, at, message, help);
     }
 
     fn keys(
@@ -202,11 +193,8 @@ impl Reader<'_> {
                 )
             }
         };
-        self.tell(
-            Diagnostic::error(Code::UnknownKey, format!("unknown key `{}`", shown(name)))
-                .at(at, "")
-                .help(help),
-        );
+        let message = format!("unknown key `{}`", shown(name));
+        self.error(Code::UnknownKey, at, message, help);
         similar
     }
 
@@ -287,14 +275,14 @@ impl Reader<'_> {
         } else {
             (b, a)
         };
+        let message = format!("`{}` has both {} and {}", owner.name, first.0, second.0);
+        let help = format!("keep either {} or {}", first.0, second.0);
+        let finding = Diagnostic::error(Code::ConflictingKeys, message);
         self.tell(
-            Diagnostic::error(
-                Code::ConflictingKeys,
-                format!("`{}` has both {} and {}", owner.name, first.0, second.0),
-            )
-            .at(second.1, "said again")
-            .at(first.1, "said here")
-            .help(format!("keep either {} or {}", first.0, second.0)),
+            finding
+                .at(second.1, "said again")
+                .at(first.1, "said here")
+                .help(help),
         );
     }
 
@@ -303,14 +291,9 @@ impl Reader<'_> {
         if name::is_valid(name) {
             return true;
         }
-        self.tell(
-            Diagnostic::error(
-                Code::InvalidName,
-                format!("`{}` is not a valid name", shown(name)),
-            )
-            .at(at, "")
-            .help(format!("a name is {}", name::RULE)),
-        );
+        let message = format!("`{}` is not a valid name", shown(name));
+        let help = format!("a name is {}", name::RULE);
+        self.error(Code::InvalidName, at, message, help);
         false
     }
 

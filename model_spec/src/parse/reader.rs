@@ -3,6 +3,7 @@
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::Span;
 use crate::visible::is_hidden;
 
 /// Maximum number of diagnostics collected.
@@ -28,6 +29,23 @@ impl Reader<'_> {
         if self.findings.len() < MAX_FINDINGS {
             self.findings.push(diagnostic);
         }
+    }
+
+    /// An error at a place, with a remedy.
+    pub(super) fn error(
+        &mut self,
+        code: Code,
+        at: Span,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.tell(Diagnostic::error(code, message).at(at, "").help(help));
+    }
+
+    /// More of something than a limit allows.
+    pub(super) fn exceeded(&mut self, at: Span, message: String, count: usize, of: &str) {
+        let finding = Diagnostic::error(Code::LimitExceeded, message);
+        self.tell(finding.at(at, format!("{count} {of}")));
     }
 
     pub(super) fn wrong_type(&mut self, value: &TomlValue<'_>, wanted: &str) {

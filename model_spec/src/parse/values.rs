@@ -39,42 +39,39 @@ impl Reader<'_> {
             Form::Values(count) => self
                 .numbers(value, Some((*count, &format!("a list of {count} numbers"))))
                 .map(ValueAst::Numbers),
-            Form::NewNames(count) => self.new_names(value, *count).map(ValueAst::Names),
+            Form::NewNames(count) => {
+                let wanted = format!("a list of {count} names");
+                let array = self.array(value, &wanted)?;
+                let array = self.of_length(array, value, &wanted, *count)?;
+                self.names(array, "a name", true)
+            }
             Form::Direction => match value.get_ref() {
                 DeValue::String(_) => self.word(key, AXES, value).map(ValueAst::Word),
-                _ => self
-                    .elements::<3>(value, "an axis such as `\"z\"`, or three components")
-                    .map(|elements| elements.map(|v| self.expression(v)))
-                    .map(|c| ValueAst::Components(Box::new(c))),
+                _ => {
+                    let wanted = "an axis such as `\"z\"`, or three components";
+                    self.components(value, wanted).map(ValueAst::Components)
+                }
             },
             Form::Expression => Some(ValueAst::Expression(self.expression(value))),
             Form::Components => self
-                .components(value)
-                .map(|c| ValueAst::Components(Box::new(c))),
+                .components(value, "three components")
+                .map(ValueAst::Components),
             Form::Matrix => {
                 let [a, b, c] = self.elements::<3>(value, "three rows")?;
-                let rows = [self.components(a), self.components(b), self.components(c)];
+                let rows = [a, b, c].map(|row| self.components(row, "three components"));
                 let [Some(a), Some(b), Some(c)] = rows else {
                     return None;
                 };
-                Some(ValueAst::Matrix(Box::new([a, b, c])))
+                Some(ValueAst::Matrix(Box::new([*a, *b, *c])))
             }
             Form::Two(target) => {
                 let word = target.word();
                 let names = self.elements::<2>(value, &format!("the names of two {word}s"))?;
-                let one = format!("the name of a {word}");
-                let [Some(a), Some(b)] = names.map(|v| self.named(v, &one)) else {
-                    return None;
-                };
-                Some(ValueAst::Pair([a, b]))
+                self.names(names, &format!("the name of a {word}"), false)
             }
             Form::Quaternion => {
                 let names = self.elements::<4>(value, "the names of four coordinates")?;
-                let names = names.map(|v| self.named(v, "the name of a coordinate"));
-                let [Some(a), Some(b), Some(c), Some(d)] = names else {
-                    return None;
-                };
-                Some(ValueAst::Four(Box::new([a, b, c, d])))
+                self.names(names, "the name of a coordinate", false)
             }
             Form::Word(words) => self.word(key, words, value).map(ValueAst::Word),
             Form::Flag => self.flag(value).map(ValueAst::Flag),
@@ -93,18 +90,10 @@ impl Reader<'_> {
         keys: &'static [Key],
         value: &TomlValue<'_>,
     ) -> Option<Vec<ItemAst>> {
-        let DeValue::Array(array) = value.get_ref() else {
-            self.wrong_type(value, "a list of tables");
-            return None;
-        };
+        let array = self.array(value, "a list of tables")?;
         if array.is_empty() || array.len() > MAX_TURNS {
-            self.tell(
-                Diagnostic::error(
-                    Code::LimitExceeded,
-                    format!("`{}` has between 1 and {MAX_TURNS} entries", key.name),
-                )
-                .at(value.span(), format!("{} entries", array.len())),
-            );
+            let message = format!("`{}` has between 1 and {MAX_TURNS} entries", key.name);
+            self.exceeded(value.span(), message, array.len(), "entries");
             return None;
         }
         // All tables are parsed first, so that the errors of all are reported.
@@ -123,32 +112,26 @@ impl Reader<'_> {
         flag
     }
 
-    fn named(&mut self, value: &TomlValue<'_>, wanted: &str) -> Option<Spanned<String>> {
-        let name = self.string(value, wanted)?;
-        Some(Spanned {
-            value: name.to_owned(),
-            span: value.span(),
-        })
-    }
-
-    fn new_names(&mut self, value: &TomlValue<'_>, count: usize) -> Option<Vec<Spanned<String>>> {
-        let wanted = format!("a list of {count} names");
-        let DeValue::Array(array) = value.get_ref() else {
-            self.wrong_type(value, &wanted);
-            return None;
-        };
-        if array.len() != count {
-            self.wrong_length(value, &wanted, array.len());
-            return None;
-        }
-        let names: Vec<_> = array
-            .iter()
-            .map(|v| {
-                let name = self.named(v, "a name")?;
-                self.is_valid_name(&name.value, v.span()).then_some(name)
+    /// Names; `defines` are those that are defined here. All are read first, so that the errors of all are reported.
+    fn names<'v, 'a: 'v>(
+        &mut self,
+        values: impl IntoIterator<Item = &'v TomlValue<'a>>,
+        wanted: &str,
+        defines: bool,
+    ) -> Option<ValueAst> {
+        let names: Vec<_> = values
+            .into_iter()
+            .map(|value| {
+                let name = self.string(value, wanted)?;
+                let is_name = !defines || self.is_valid_name(name, value.span());
+                is_name.then(|| Spanned {
+                    value: name.to_owned(),
+                    span: value.span(),
+                })
             })
             .collect();
-        names.into_iter().collect()
+        let names: Option<Vec<_>> = names.into_iter().collect();
+        names.map(ValueAst::Names)
     }
 
     fn string<'v>(&mut self, value: &'v TomlValue<'_>, wanted: &str) -> Option<&'v str> {
@@ -163,13 +146,8 @@ impl Reader<'_> {
     fn sentence(&mut self, value: &TomlValue<'_>) -> Option<String> {
         let text = self.string(value, "a string")?;
         if text.len() > MAX_SENTENCE {
-            self.tell(
-                Diagnostic::error(
-                    Code::LimitExceeded,
-                    format!("a sentence has at most {MAX_SENTENCE} bytes"),
-                )
-                .at(value.span(), format!("{} bytes", text.len())),
-            );
+            let message = format!("a sentence has at most {MAX_SENTENCE} bytes");
+            self.exceeded(value.span(), message, text.len(), "bytes");
             return None;
         }
         // Escapes such as `\u202E` appear only in the decoded text.
@@ -179,14 +157,9 @@ impl Reader<'_> {
                 // Already reported by the check of the whole file.
                 return None;
             }
-            self.tell(
-                Diagnostic::error(
-                    Code::ForbiddenCharacter,
-                    format!("the character U+{:04X} is not allowed here", u32::from(c)),
-                )
-                .at(value.span(), "")
-                .help("write one line of plain text"),
-            );
+            let message = format!("the character U+{:04X} is not allowed here", u32::from(c));
+            let help = "write one line of plain text";
+            self.error(Code::ForbiddenCharacter, value.span(), message, help);
             return None;
         }
         Some(text.to_owned())
@@ -237,22 +210,13 @@ impl Reader<'_> {
         length: Option<(usize, &str)>,
     ) -> Option<Vec<Spanned<BigRational>>> {
         let wanted = length.map_or("a list of numbers", |(_, wanted)| wanted);
-        let DeValue::Array(array) = value.get_ref() else {
-            self.wrong_type(value, wanted);
-            return None;
-        };
-        if length.is_some_and(|(n, _)| array.len() != n) {
-            self.wrong_length(value, wanted, array.len());
-            return None;
+        let mut array = self.array(value, wanted)?;
+        if let Some((count, _)) = length {
+            array = self.of_length(array, value, wanted, count)?;
         }
         if array.len() > MAX_SAMPLES {
-            self.tell(
-                Diagnostic::error(
-                    Code::LimitExceeded,
-                    format!("a signal has at most {MAX_SAMPLES} samples"),
-                )
-                .at(value.span(), format!("{} samples", array.len())),
-            );
+            let message = format!("a signal has at most {MAX_SAMPLES} samples");
+            self.exceeded(value.span(), message, array.len(), "samples");
             return None;
         }
         let read: Vec<_> = array
@@ -267,37 +231,49 @@ impl Reader<'_> {
         read.into_iter().collect()
     }
 
-    fn wrong_length(&mut self, value: &TomlValue<'_>, wanted: &str, found: usize) {
-        let plural = if found == 1 { "y" } else { "ies" };
-        self.tell(
-            Diagnostic::error(
-                Code::WrongType,
-                format!("expected {wanted}, found a list of {found}"),
-            )
-            .at(value.span(), format!("{found} entr{plural}")),
-        );
-    }
-
-    fn elements<'v, const N: usize>(
+    fn array<'v, 'a>(
         &mut self,
-        value: &'v TomlValue<'_>,
+        value: &'v TomlValue<'a>,
         wanted: &str,
-    ) -> Option<[&'v TomlValue<'v>; N]> {
-        let DeValue::Array(array) = value.get_ref() else {
-            self.wrong_type(value, &format!("{wanted}, as a list"));
-            return None;
-        };
-        let elements: Vec<&TomlValue<'_>> = array.iter().take(N + 1).collect();
-        let found = array.len();
-        elements
-            .try_into()
-            .inspect_err(|_| self.wrong_length(value, wanted, found))
-            .ok()
+    ) -> Option<&'v [TomlValue<'a>]> {
+        if let DeValue::Array(array) = value.get_ref() {
+            return Some(array);
+        }
+        self.wrong_type(value, wanted);
+        None
     }
 
-    fn components(&mut self, value: &TomlValue<'_>) -> Option<[ExprAst; 3]> {
-        self.elements::<3>(value, "three components")
-            .map(|elements| elements.map(|v| self.expression(v)))
+    /// A list, if it has a length.
+    fn of_length<'v, 'a>(
+        &mut self,
+        array: &'v [TomlValue<'a>],
+        value: &TomlValue<'_>,
+        wanted: &str,
+        count: usize,
+    ) -> Option<&'v [TomlValue<'a>]> {
+        let found = array.len();
+        if found == count {
+            return Some(array);
+        }
+        let plural = if found == 1 { "y" } else { "ies" };
+        let message = format!("expected {wanted}, found a list of {found}");
+        let finding = Diagnostic::error(Code::WrongType, message);
+        self.tell(finding.at(value.span(), format!("{found} entr{plural}")));
+        None
+    }
+
+    fn elements<'v, 'a, const N: usize>(
+        &mut self,
+        value: &'v TomlValue<'a>,
+        wanted: &str,
+    ) -> Option<&'v [TomlValue<'a>; N]> {
+        let array = self.array(value, &format!("{wanted}, as a list"))?;
+        self.of_length(array, value, wanted, N)?.try_into().ok()
+    }
+
+    fn components(&mut self, value: &TomlValue<'_>, wanted: &str) -> Option<Box<[ExprAst; 3]>> {
+        let elements = self.elements::<3>(value, wanted)?;
+        Some(Box::new(elements.each_ref().map(|v| self.expression(v))))
     }
 
     /// An expression; an invalid one becomes a placeholder that causes no further error.

@@ -167,14 +167,14 @@ impl Resolver<'_> {
     }
 
     fn exponent_not_constant(&mut self, base: &Typed, dimension: Dimension, exponent: &Typed) {
+        let message = "the exponent of a quantity with a unit must be a number";
+        let help = "divide the base by a reference value of the same unit first";
+        let finding = Diagnostic::error(Code::ExponentNotConstant, message);
         self.tell(
-            Diagnostic::error(
-                Code::ExponentNotConstant,
-                "the exponent of a quantity with a unit must be a number",
-            )
-            .at(exponent.span(), "not a number")
-            .at(base.span(), unit_words(dimension))
-            .help("divide the base by a reference value of the same unit first"),
+            finding
+                .at(exponent.span(), "not a number")
+                .at(base.span(), unit_words(dimension))
+                .help(help),
         );
     }
 
@@ -186,14 +186,9 @@ impl Resolver<'_> {
         help: Option<String>,
     ) -> Dim {
         dim.unwrap_or_else(|| {
-            self.tell(
-                Diagnostic::error(
-                    Code::LimitExceeded,
-                    "the unit of this expression has too large an exponent",
-                )
-                .at(span.clone(), "")
-                .maybe_help(help),
-            );
+            let message = "the unit of this expression has too large an exponent";
+            let finding = Diagnostic::error(Code::LimitExceeded, message);
+            self.tell(finding.at(span.clone(), "").maybe_help(help));
             Dim::Unknown
         })
     }

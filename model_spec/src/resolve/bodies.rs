@@ -38,14 +38,14 @@ impl Resolver<'_> {
             && item.entry("frame").is_none()
             && item.intact
         {
+            let message = format!("`{}` has an inertia but no frame", item.name.value);
+            let help = "name the frame that is fixed in the body";
+            let finding = Diagnostic::error(Code::BodyWithoutFrame, message);
             self.tell(
-                Diagnostic::error(
-                    Code::BodyWithoutFrame,
-                    format!("`{}` has an inertia but no frame", item.name.value),
-                )
-                .at(item.name.span.clone(), "`frame` is missing")
-                .at(inertia.span.clone(), "needs a frame fixed in the body")
-                .help("name the frame that is fixed in the body"),
+                finding
+                    .at(item.name.span.clone(), "`frame` is missing")
+                    .at(inertia.span.clone(), "needs a frame fixed in the body")
+                    .help(help),
             );
         }
         let mass = self.expression_of(item, "mass", &MASS, Dim::Known(Dimension::MASS));
@@ -89,16 +89,12 @@ impl Resolver<'_> {
         // A missing frame is reported with the body.
         let normal = frame.map_or(Some(Axis::Z), |frame| normal(frame, frames));
         let Some(normal) = normal else {
-            self.tell(
-                Diagnostic::error(
-                    Code::NotAllowedHere,
-                    "one moment of inertia is enough only for a body that turns about one axis",
-                )
-                .at(span.clone(), "about which axis?")
-                .help(
-                    "write `inertia = { in = \"FRAME\", diagonal = [\"I_x\", \"I_y\", \"I_z\"] }`",
-                ),
-            );
+            let message =
+                "one moment of inertia is enough only for a body that turns about one axis";
+            let help =
+                "write `inertia = { in = \"FRAME\", diagonal = [\"I_x\", \"I_y\", \"I_z\"] }`";
+            let finding = Diagnostic::error(Code::NotAllowedHere, message);
+            self.tell(finding.at(span.clone(), "about which axis?").help(help));
             return None;
         };
         let matrix = [0, 1, 2].map(|i| {
@@ -158,17 +154,17 @@ impl Resolver<'_> {
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if !same(&rows[i][j], &rows[j][i]) {
                 let axes = Axis::LETTERS;
+                let message = format!(
+                    "the inertia is not symmetric: `I_{0}{1}` differs from `I_{1}{0}`",
+                    axes[i], axes[j]
+                );
+                let help = "write both the same, or use `moments` with `products`";
+                let finding = Diagnostic::error(Code::ConflictingKeys, message);
                 self.tell(
-                    Diagnostic::error(
-                        Code::ConflictingKeys,
-                        format!(
-                            "the inertia is not symmetric: `I_{0}{1}` differs from `I_{1}{0}`",
-                            axes[i], axes[j]
-                        ),
-                    )
-                    .at(rows[j][i].span.clone(), "this")
-                    .at(rows[i][j].span.clone(), "and this")
-                    .help("write both the same, or use `moments` with `products`"),
+                    finding
+                        .at(rows[j][i].span.clone(), "this")
+                        .at(rows[i][j].span.clone(), "and this")
+                        .help(help),
                 );
                 return;
             }
@@ -206,32 +202,15 @@ fn negative(expr: Expr) -> Expr {
 
 /// Whether two expressions are syntactically equal.
 fn same(a: &Expr, b: &Expr) -> bool {
-    match (&a.kind, &b.kind) {
+    let is_alike = match (&a.kind, &b.kind) {
         (ExprKind::Number(x), ExprKind::Number(y)) => x == y,
         (ExprKind::Quantity(x), ExprKind::Quantity(y)) => x == y,
-        (ExprKind::Negate(x), ExprKind::Negate(y)) => same(x, y),
-        (ExprKind::Binary(p, a, b), ExprKind::Binary(q, c, d)) => {
-            p == q && same(a, c) && same(b, d)
-        }
-        (ExprKind::Call(f, a), ExprKind::Call(g, b)) => {
-            f == g && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
-        }
-        (
-            ExprKind::Choice {
-                relation: r,
-                compared: a,
-                branches: b,
-            },
-            ExprKind::Choice {
-                relation: s,
-                compared: c,
-                branches: d,
-            },
-        ) => {
-            r == s
-                && a.iter().zip(c.iter()).all(|(a, c)| same(a, c))
-                && b.iter().zip(d.iter()).all(|(b, d)| same(b, d))
-        }
+        (ExprKind::Negate(_), ExprKind::Negate(_)) => true,
+        (ExprKind::Binary(p, ..), ExprKind::Binary(q, ..)) => p == q,
+        (ExprKind::Call(f, _), ExprKind::Call(g, _)) => f == g,
+        (ExprKind::Choice { relation: r, .. }, ExprKind::Choice { relation: s, .. }) => r == s,
         _ => false,
-    }
+    };
+    let (own, others) = (a.parts(), b.parts());
+    is_alike && own.len() == others.len() && own.iter().zip(others).all(|(a, b)| same(a, b))
 }

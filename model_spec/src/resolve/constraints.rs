@@ -60,13 +60,13 @@ impl Resolver<'_> {
         let friction = item.expression("friction").cloned();
         let creep = self.creep(item);
         if let (Some(_), Some(given)) = (&creep, item.entry("on")) {
+            let message = format!("`{}` creeps on a body that moves", item.name.value);
+            let help = "remove the creep coefficients, or `on`";
+            let finding = Diagnostic::error(Code::NotAllowedHere, message);
             self.tell(
-                Diagnostic::error(
-                    Code::NotAllowedHere,
-                    format!("`{}` creeps on a body that moves", item.name.value),
-                )
-                .at(given.span.clone(), "creep is known on the ground only")
-                .help("remove the creep coefficients, or `on`"),
+                finding
+                    .at(given.span.clone(), "creep is known on the ground only")
+                    .help(help),
             );
         }
         ConstraintKind::Rolling {
@@ -99,13 +99,13 @@ impl Resolver<'_> {
     fn normal(&mut self, item: &ItemAst) -> Option<Normal> {
         let frame = self.optional_reference(item, "in");
         if let (None, Some(given)) = (item.entry("normal"), item.entry("in")) {
+            let message = format!("`{}` has no `normal`", item.name.value);
+            let help = "write the axis that points from the surface into the body, such as `normal = \"z\"`";
+            let finding = Diagnostic::error(Code::MissingKey, message);
             self.tell(
-                Diagnostic::error(
-                    Code::MissingKey,
-                    format!("`{}` has no `normal`", item.name.value),
-                )
-                .at(given.span.clone(), "no axis of this frame is given")
-                .help("write the axis that points from the surface into the body, such as `normal = \"z\"`"),
+                finding
+                    .at(given.span.clone(), "no axis of this frame is given")
+                    .help(help),
             );
         }
         item.entry("normal")?;
@@ -187,14 +187,13 @@ impl Resolver<'_> {
         if body.frame.is_some() || given {
             return;
         }
+        let message = format!("`{}` is a point mass and cannot {what}", body.name);
+        let finding = Diagnostic::error(Code::BodyWithoutFrame, message);
         self.tell(
-            Diagnostic::error(
-                Code::BodyWithoutFrame,
-                format!("`{}` is a point mass and cannot {what}", body.name),
-            )
-            .at(name.span, "")
-            .at(body.span.clone(), "has no frame")
-            .help("give the body a `frame`"),
+            finding
+                .at(name.span, "")
+                .at(body.span.clone(), "has no frame")
+                .help("give the body a `frame`"),
         );
     }
 }

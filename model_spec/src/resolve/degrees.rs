@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use num_traits::ToPrimitive;
 
 use super::resolver::Resolver;
-use crate::ast::{ExprAst, ExprAstKind, ItemAst, ValueAst};
+use crate::ast::{ExprAst, ExprAstKind, ItemAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Span};
 use crate::mechanism::{Label, Mechanism};
@@ -88,23 +88,10 @@ impl Resolver<'_> {
 /// The expressions of an item that are angles, with a description of each.
 fn collect_angles<'a>(item: &'a ItemAst, angles: &mut Vec<(&'a ExprAst, &'static str)>) {
     for entry in &item.entries {
-        let expressions: Vec<&ExprAst> = match &entry.value {
-            ValueAst::Expression(one) => vec![one],
-            ValueAst::Components(three) => three.iter().collect(),
-            ValueAst::Matrix(nine) => nine.iter().flatten().collect(),
-            ValueAst::Tables(items) => {
-                for item in items {
-                    collect_angles(item, angles);
-                }
-                continue;
-            }
-            ValueAst::Table(item) => {
-                collect_angles(item, angles);
-                continue;
-            }
-            _ => continue,
-        };
-        for expression in expressions {
+        for item in entry.value.tables() {
+            collect_angles(item, angles);
+        }
+        for expression in entry.value.expressions() {
             // A constant angle is reported elsewhere.
             let is_number = matches!(expression.kind, ExprAstKind::Number(..));
             if entry.key.name == "by" && !is_number {
@@ -117,29 +104,16 @@ fn collect_angles<'a>(item: &'a ItemAst, angles: &mut Vec<(&'a ExprAst, &'static
 
 /// The arguments of trigonometric functions.
 fn arguments<'a>(expression: &'a ExprAst, angles: &mut Vec<(&'a ExprAst, &'static str)>) {
-    let parts: Vec<&ExprAst> = match &expression.kind {
-        ExprAstKind::Negate(inner) => vec![inner],
-        ExprAstKind::Binary(_, a, b) => vec![a, b],
-        ExprAstKind::Call(function, inner) => {
-            let of = match function {
-                Function::Sin => Some("the argument of `sin`"),
-                Function::Cos => Some("the argument of `cos`"),
-                Function::Tan => Some("the argument of `tan`"),
-                _ => None,
-            };
-            angles.extend(inner.first().zip(of));
-            inner.iter().collect()
-        }
-        ExprAstKind::Choice {
-            compared, branches, ..
-        } => compared.iter().chain(branches.iter()).collect(),
-        ExprAstKind::Number(..)
-        | ExprAstKind::Name(_)
-        | ExprAstKind::Rate(_)
-        | ExprAstKind::Named(..)
-        | ExprAstKind::Broken => Vec::new(),
-    };
-    for part in parts {
+    if let ExprAstKind::Call(function, inner) = &expression.kind {
+        let of = match function {
+            Function::Sin => Some("the argument of `sin`"),
+            Function::Cos => Some("the argument of `cos`"),
+            Function::Tan => Some("the argument of `tan`"),
+            _ => None,
+        };
+        angles.extend(inner.first().zip(of));
+    }
+    for part in expression.parts() {
         arguments(part, angles);
     }
 }

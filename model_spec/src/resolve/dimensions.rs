@@ -140,17 +140,14 @@ impl Resolver<'_> {
         } else {
             format!("have the unit `{unit}`")
         };
+        let message = format!(
+            "{} must {must}, found {}",
+            place.what,
+            quantity_name(&found)
+        );
+        let finding = Diagnostic::error(Code::UnitMismatch, message);
         self.tell(
-            Diagnostic::error(
-                Code::UnitMismatch,
-                format!(
-                    "{} must {must}, found {}",
-                    place.what,
-                    quantity_name(&found)
-                ),
-            )
-            .at(typed.span(), unit_words(found))
-            .maybe_help(
+            finding.at(typed.span(), unit_words(found)).maybe_help(
                 typed
                     .missing_unit(wanted)
                     .or_else(|| typed.milliseconds(wanted)),
@@ -167,18 +164,17 @@ impl Resolver<'_> {
                 if left == right {
                     return a.dim;
                 }
+                let message = format!(
+                    "cannot {doing} {} and {}",
+                    quantity_name(&left),
+                    quantity_name(&right)
+                );
+                let finding = Diagnostic::error(Code::UnitMismatch, message);
                 self.tell(
-                    Diagnostic::error(
-                        Code::UnitMismatch,
-                        format!(
-                            "cannot {doing} {} and {}",
-                            quantity_name(&left),
-                            quantity_name(&right)
-                        ),
-                    )
-                    .at(b.span(), unit_words(right))
-                    .at(a.span(), unit_words(left))
-                    .maybe_help(b.missing_unit(left).or_else(|| a.missing_unit(right))),
+                    finding
+                        .at(b.span(), unit_words(right))
+                        .at(a.span(), unit_words(left))
+                        .maybe_help(b.missing_unit(left).or_else(|| a.missing_unit(right))),
                 );
                 Dim::Unknown
             }

@@ -120,14 +120,9 @@ impl Resolver<'_> {
             Meaning::Quantity(quantity) => self.quantity(quantity, dimension, name, span, place),
             Meaning::Definition(id) => self.defined(id, name, span, place),
             Meaning::Output => {
-                self.tell(
-                    Diagnostic::error(
-                        Code::NotAllowedHere,
-                        format!("the output `{name}` cannot be used in an expression"),
-                    )
-                    .at(span.clone(), "")
-                    .help("repeat its definition"),
-                );
+                let message = format!("the output `{name}` cannot be used in an expression");
+                let help = "repeat its definition";
+                self.error(Code::NotAllowedHere, span.clone(), message, help);
                 Typed::poisoned(span)
             }
         }
@@ -188,14 +183,8 @@ impl Resolver<'_> {
                         "define its rate as a separate quantity"
                     }
                 };
-                self.tell(
-                    Diagnostic::error(
-                        Code::NotAllowedHere,
-                        format!("`{text}` is not a coordinate; `dot` takes the name of one"),
-                    )
-                    .at(name.span.clone(), "")
-                    .help(help),
-                );
+                let message = format!("`{text}` is not a coordinate; `dot` takes the name of one");
+                self.error(Code::NotAllowedHere, name.span.clone(), message, help);
             }
             None => {
                 self.unknown("name", text, &name.span, |this| {
@@ -251,14 +240,8 @@ impl Resolver<'_> {
             Quantity::Motion(_) if place.allows_coordinates() => format!("{instead}; {allowed}"),
             _ => allowed,
         };
-        self.tell(
-            Diagnostic::error(
-                Code::NotAllowedHere,
-                format!("{} cannot depend on {what} `{name}`", place.what),
-            )
-            .at(span.clone(), "")
-            .help(help),
-        );
+        let message = format!("{} cannot depend on {what} `{name}`", place.what);
+        self.error(Code::NotAllowedHere, span.clone(), message, help);
     }
 
     fn smooth_enough(&mut self, id: SignalId, span: &Span, place: &Place) {
@@ -268,20 +251,15 @@ impl Resolver<'_> {
         if place.smooth.admits(interpolation) {
             return;
         }
-        self.tell(
-            Diagnostic::error(
-                Code::SignalTooRough,
-                format!(
-                    "the signal `{name}` is not smooth enough for {}",
-                    place.what
-                ),
-            )
-            .at(span.clone(), "")
-            .help(format!(
-                "give the signal `interpolation = \"{}\"`",
-                place.smooth.remedy()
-            )),
+        let message = format!(
+            "the signal `{name}` is not smooth enough for {}",
+            place.what
         );
+        let help = format!(
+            "give the signal `interpolation = \"{}\"`",
+            place.smooth.remedy()
+        );
+        self.error(Code::SignalTooRough, span.clone(), message, help);
     }
 
     /// Warns of a conditional whose branch can change during the motion.
@@ -308,14 +286,9 @@ impl Resolver<'_> {
     }
 
     fn may_jump(&mut self, word: &str, span: &Span, place: &Place, help: &str) {
-        self.tell(
-            Diagnostic::warning(
-                Code::MotionMayJump,
-                format!("`{word}` may not be smooth enough for {}", place.what),
-            )
-            .at(span.clone(), "")
-            .help(help),
-        );
+        let message = format!("`{word}` may not be smooth enough for {}", place.what);
+        let finding = Diagnostic::warning(Code::MotionMayJump, message);
+        self.tell(finding.at(span.clone(), "").help(help));
     }
 
     fn call(
@@ -370,17 +343,13 @@ impl Resolver<'_> {
         if let Dim::Known(d) = argument.dim
             && !d.is_none()
         {
-            self.tell(
-                Diagnostic::error(
-                    Code::UnitMismatch,
-                    format!(
-                        "`{}` takes a pure number or an angle, found {}",
-                        function.name(),
-                        crate::units::quantity_name(&d)
-                    ),
-                )
-                .at(argument.span(), super::dimensions::unit_words(d)),
+            let message = format!(
+                "`{}` takes a pure number or an angle, found {}",
+                function.name(),
+                crate::units::quantity_name(&d)
             );
+            let finding = Diagnostic::error(Code::UnitMismatch, message);
+            self.tell(finding.at(argument.span(), super::dimensions::unit_words(d)));
         }
     }
 
@@ -393,14 +362,10 @@ impl Resolver<'_> {
 
     pub(super) fn not_linear(&mut self, place: &Place, why: &str, span: Span, words: &str) {
         if place.linear {
-            self.tell(
-                Diagnostic::error(
-                    Code::NotLinear,
-                    format!("{} must be linear in the rates, found {why}", place.what),
-                )
-                .at(span, words)
-                .help("write a sum of terms with exactly one `dot(q)` each"),
-            );
+            let message = format!("{} must be linear in the rates, found {why}", place.what);
+            let help = "write a sum of terms with exactly one `dot(q)` each";
+            let finding = Diagnostic::error(Code::NotLinear, message);
+            self.tell(finding.at(span, words).help(help));
         }
     }
 }

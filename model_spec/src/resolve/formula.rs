@@ -185,17 +185,7 @@ fn has_unit(ast: &ExprAst) -> bool {
 
 /// Whether an expression contains a part of some kind.
 fn any(ast: &ExprAst, is: &impl Fn(&ExprAst) -> bool) -> bool {
-    let within = |part: &ExprAst| any(part, is);
-    is(ast)
-        || match &ast.kind {
-            ExprAstKind::Negate(a) => within(a),
-            ExprAstKind::Binary(_, a, b) => within(a) || within(b),
-            ExprAstKind::Call(_, arguments) => arguments.iter().any(within),
-            ExprAstKind::Choice {
-                compared, branches, ..
-            } => compared.iter().chain(branches.iter()).any(within),
-            _ => false,
-        }
+    is(ast) || ast.parts().into_iter().any(|part| any(part, is))
 }
 
 /// A number of a unit.

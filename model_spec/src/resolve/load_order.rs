@@ -1,6 +1,6 @@
 //! The order in which loads are resolved: each after those whose forces it uses.
 
-use crate::ast::{ExprAst, ExprAstKind, ItemAst, Spanned, ValueAst};
+use crate::ast::{ExprAst, ExprAstKind, ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::Word;
 
@@ -13,12 +13,8 @@ pub(super) fn ordered(resolver: &mut Resolver<'_>, items: &[&ItemAst]) -> Vec<us
         .map(|item| {
             let mut names = Vec::new();
             for entry in &item.entries {
-                match &entry.value {
-                    ValueAst::Expression(ast) => forces(ast, &mut names),
-                    ValueAst::Components(parts) => {
-                        parts.iter().for_each(|ast| forces(ast, &mut names));
-                    }
-                    _ => {}
+                for ast in entry.value.expressions() {
+                    forces(ast, &mut names);
                 }
             }
             // A missing load is reported when the name is resolved.
@@ -59,25 +55,11 @@ pub(super) fn ordered(resolver: &mut Resolver<'_>, items: &[&ItemAst]) -> Vec<us
 
 /// The loads whose forces an expression uses.
 fn forces<'a>(ast: &'a ExprAst, names: &mut Vec<&'a Spanned<String>>) {
-    match &ast.kind {
-        ExprAstKind::Named(Word::Force, own) => names.extend(own.first()),
-        ExprAstKind::Number(..)
-        | ExprAstKind::Name(_)
-        | ExprAstKind::Rate(_)
-        | ExprAstKind::Named(..)
-        | ExprAstKind::Broken => {}
-        ExprAstKind::Negate(a) => forces(a, names),
-        ExprAstKind::Binary(_, a, b) => {
-            forces(a, names);
-            forces(b, names);
-        }
-        ExprAstKind::Call(_, parts) => parts.iter().for_each(|part| forces(part, names)),
-        ExprAstKind::Choice {
-            compared, branches, ..
-        } => compared
-            .iter()
-            .chain(branches.iter())
-            .for_each(|part| forces(part, names)),
+    if let ExprAstKind::Named(Word::Force, own) = &ast.kind {
+        names.extend(own.first());
+    }
+    for part in ast.parts() {
+        forces(part, names);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Forces, torques, springs and dampers.
 
-use crate::ast::{ItemAst, Spanned, ValueAst};
+use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, ExprKind, Quantity, Span};
 use crate::language::{ItemKind, LoadWord};
@@ -153,14 +153,13 @@ impl Resolver<'_> {
     }
 
     fn connected_to_itself(&mut self, name: &str, span: Span, first: Span) {
+        let message = format!("`{name}` acts on itself, which changes nothing");
+        let finding = Diagnostic::error(Code::SelfReaction, message);
         self.tell(
-            Diagnostic::error(
-                Code::SelfReaction,
-                format!("`{name}` acts on itself, which changes nothing"),
-            )
-            .at(span, "the same again")
-            .at(first, "here")
-            .help("name two different items"),
+            finding
+                .at(span, "the same again")
+                .at(first, "here")
+                .help("name two different items"),
         );
     }
 
@@ -173,7 +172,7 @@ impl Resolver<'_> {
     /// The connection of a spring or damper, and the dimension of its displacement.
     fn connection(&mut self, item: &ItemAst) -> (Connection, Option<Dimension>) {
         let both = item.entry("between").is_some() && item.entry("coordinate").is_some();
-        if let Some(ValueAst::Pair([a, b])) = item.entry("between").map(|e| &e.value) {
+        if let Some([a, b]) = item.names("between") {
             let first = self.find(&a.value, &a.span).unwrap_or(ORIGIN);
             let second = self.find(&b.value, &b.span).unwrap_or(ORIGIN);
             self.two_ends(a, b);
@@ -237,12 +236,12 @@ impl Resolver<'_> {
     }
 
     fn torsional_spring(&mut self, item: &ItemAst, frames: &[Frame]) -> LoadKind {
-        let angle = match item.entry("between").map(|entry| &entry.value) {
-            Some(ValueAst::Pair([a, b])) if a.value == b.value => {
+        let angle = match item.names("between") {
+            Some([a, b]) if a.value == b.value => {
                 self.two_ends(a, b);
                 Expr::integer(0, a.span.clone())
             }
-            Some(ValueAst::Pair(ends)) => self.relative_angle(ends, frames),
+            Some([first, second]) => self.relative_angle([first, second], frames),
             _ => Expr::integer(0, item.name.span.clone()),
         };
         let torque = Dim::Known(Dimension::TORQUE);

@@ -233,11 +233,7 @@ impl Resolver<'_> {
                 "write the weight of a body as its mass times the acceleration".to_owned(),
             ),
         };
-        self.tell(
-            Diagnostic::error(Code::WrongArity, message)
-                .at(span.clone(), "")
-                .help(help),
-        );
+        self.error(Code::WrongArity, span.clone(), message, help);
         None
     }
 
@@ -257,16 +253,11 @@ impl Resolver<'_> {
             Shape::Vector => format!("reaction({name}, z)"),
             Shape::Scalar | Shape::Spread => format!("reaction({name})"),
         };
-        self.tell(
-            Diagnostic::error(
-                Code::NotAllowedHere,
-                format!("`{name}` is no contact: its reaction has no normal"),
-            )
-            .at(span.clone(), "")
-            .help(format!(
-                "write `{written}`, or give a constraint that can only push `one_sided = true`"
-            )),
+        let message = format!("`{name}` is no contact: its reaction has no normal");
+        let help = format!(
+            "write `{written}`, or give a constraint that can only push `one_sided = true`"
         );
+        self.error(Code::NotAllowedHere, span.clone(), message, help);
         None
     }
 
@@ -288,14 +279,8 @@ impl Resolver<'_> {
         } else {
             format!("allowed here: {}", place.allowed_words())
         };
-        self.tell(
-            Diagnostic::error(
-                Code::NotAllowedHere,
-                format!("{} cannot depend on {what}", place.what),
-            )
-            .at(span.clone(), "")
-            .help(help),
-        );
+        let message = format!("{} cannot depend on {what}", place.what);
+        self.error(Code::NotAllowedHere, span.clone(), message, help);
     }
 
     fn axis_named(&mut self, name: &Spanned<String>, word: Word) -> Option<Axis> {
@@ -307,14 +292,11 @@ impl Resolver<'_> {
         };
         if axis.is_none() {
             let message = format!("`{}` is no axis", shown(&name.value));
-            self.tell(
-                Diagnostic::error(Code::UnknownReference, message)
-                    .at(name.span.clone(), "")
-                    .help(format!(
-                        "the second name is an axis, `x`, `y` or `z`: `{}`",
-                        word.example()
-                    )),
+            let help = format!(
+                "the second name is an axis, `x`, `y` or `z`: `{}`",
+                word.example()
             );
+            self.error(Code::UnknownReference, name.span.clone(), message, help);
         }
         axis
     }
@@ -327,13 +309,8 @@ impl Resolver<'_> {
             let with_frame = word.example().replace(')', ", frame)");
             format!(", or `{with_frame}` for an axis of a frame")
         };
-        self.tell(
-            Diagnostic::error(
-                Code::WrongArity,
-                format!("`{}` has other names", word.name()),
-            )
-            .at(span.clone(), "")
-            .help(format!("write `{}`{more}", word.example())),
-        );
+        let message = format!("`{}` has other names", word.name());
+        let help = format!("write `{}`{more}", word.example());
+        self.error(Code::WrongArity, span.clone(), message, help);
     }
 }

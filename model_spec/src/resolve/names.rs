@@ -73,14 +73,9 @@ impl<'a> Resolver<'a> {
         let text = name.value.as_str();
         if is_reserved(text) {
             self.reserved.insert(text);
-            self.tell(
-                Diagnostic::error(
-                    Code::ReservedName,
-                    format!("`{text}` is reserved in expressions"),
-                )
-                .at(name.span.clone(), "")
-                .help("choose another name"),
-            );
+            let message = format!("`{text}` is reserved in expressions");
+            let help = "choose another name";
+            self.error(Code::ReservedName, name.span.clone(), message, help);
             return;
         }
         if let Some(first) = self.names.get(text) {

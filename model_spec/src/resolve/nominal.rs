@@ -37,13 +37,13 @@ impl Resolver<'_> {
         } = &constraint.kind
             && value(friction, parameters) < 0.0
         {
+            let message = format!("the friction of `{}` is negative", constraint.name);
+            let help = "a coefficient of friction is the ratio of the largest tangential force to the normal force";
+            let finding = Diagnostic::error(Code::NotPhysical, message);
             self.tell(
-                Diagnostic::error(
-                    Code::NotPhysical,
-                    format!("the friction of `{}` is negative", constraint.name),
-                )
-                .at(friction.span.clone(), "with the values of this spec")
-                .help("a coefficient of friction is the ratio of the largest tangential force to the normal force"),
+                finding
+                    .at(friction.span.clone(), "with the values of this spec")
+                    .help(help),
             );
         }
     }

@@ -1,6 +1,6 @@
 //! Orientations by unit quaternions: the four coordinates of a frame, and the constraint that keeps their norm.
 
-use crate::ast::{ItemAst, ValueAst};
+use crate::ast::ItemAst;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{BinaryOp, Expr, ExprKind, Quantity, Span};
 use crate::ids::CoordinateId;
@@ -12,9 +12,7 @@ use super::resolver::Resolver;
 impl Resolver<'_> {
     /// The coordinates of a frame's quaternion, scalar part first; none if the frame is rotated by angles.
     pub(super) fn quaternion(&mut self, item: &ItemAst) -> Option<[CoordinateId; 4]> {
-        let Some(ValueAst::Four(names)) = item.entry("quaternion").map(|entry| &entry.value) else {
-            return None;
-        };
+        let names = item.names("quaternion")?;
         let mut taken = [CoordinateId::new(0); 4];
         for (target, name) in taken.iter_mut().zip(names.iter()) {
             *target = self.find(&name.value, &name.span)?;
@@ -28,14 +26,10 @@ impl Resolver<'_> {
         }
         for (name, id) in names.iter().zip(taken) {
             if self.in_quaternions.contains(&id) {
-                self.tell(
-                    Diagnostic::error(
-                        Code::ConflictingKeys,
-                        format!("`{}` is a component of a quaternion twice", name.value),
-                    )
-                    .at(name.span.clone(), "here again")
-                    .help("each quaternion has four coordinates of its own; frames that turn alike have all four in common"),
-                );
+                let message = format!("`{}` is a component of a quaternion twice", name.value);
+                let help = "each quaternion has four coordinates of its own; frames that turn alike have all four in common";
+                let finding = Diagnostic::error(Code::ConflictingKeys, message);
+                self.tell(finding.at(name.span.clone(), "here again").help(help));
                 return None;
             }
             let dimension = self.names.get(name.value.as_str())?.dimension;

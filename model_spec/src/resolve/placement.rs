@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::ast::{ItemAst, ValueAst};
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::Code;
 use crate::expr::Expr;
 use crate::language::{Sense, Target};
 use crate::mechanism::{Axis, Frame, GROUND, Point, Turn};
@@ -144,14 +144,9 @@ impl<'a> Resolver<'a> {
 
     fn given(&mut self, item: &ItemAst) {
         let name = &item.name.value;
-        self.tell(
-            Diagnostic::error(
-                Code::ReservedName,
-                format!("`{name}` is predefined and cannot be defined again"),
-            )
-            .at(item.name.span.clone(), "")
-            .help("choose another name"),
-        );
+        let message = format!("`{name}` is predefined and cannot be defined again");
+        let help = "choose another name";
+        self.error(Code::ReservedName, item.name.span.clone(), message, help);
     }
 
     /// Reports each circular definition once.
@@ -180,21 +175,16 @@ impl<'a> Resolver<'a> {
                 .iter()
                 .find(|i| i.name.value == name)
                 .map_or(0..0, |i| i.name.span.clone());
-            self.tell(
-                Diagnostic::error(
-                    Code::ReferenceCycle,
-                    format!(
-                        "circular definition of {}s: {}",
-                        target.word(),
-                        circle.join(" from ")
-                    ),
-                )
-                .at(at, "")
-                .help(match target {
-                    Target::Frame => "rotate one of them from `ground`",
-                    _ => "place one of them from `O`",
-                }),
+            let message = format!(
+                "circular definition of {}s: {}",
+                target.word(),
+                circle.join(" from ")
             );
+            let help = match target {
+                Target::Frame => "rotate one of them from `ground`",
+                _ => "place one of them from `O`",
+            };
+            self.error(Code::ReferenceCycle, at, message, help);
         }
     }
 }

@@ -330,22 +330,22 @@ impl<'a> Resolver<'a> {
             && found != written.value.dimension
         {
             let wanted = written.value.dimension;
+            let message = format!(
+                "`{}` is declared as {}, its value is {}",
+                item.name.value,
+                crate::units::quantity_name(&wanted),
+                crate::units::quantity_name(&found)
+            );
+            let help = format!(
+                "write `unit = \"{}\"`",
+                natural_unit(found, &typed.expr, coordinates).text
+            );
+            let finding = Diagnostic::error(Code::UnitMismatch, message);
             self.tell(
-                Diagnostic::error(
-                    Code::UnitMismatch,
-                    format!(
-                        "`{}` is declared as {}, its value is {}",
-                        item.name.value,
-                        crate::units::quantity_name(&wanted),
-                        crate::units::quantity_name(&found)
-                    ),
-                )
-                .at(written.span, super::dimensions::unit_words(wanted))
-                .at(typed.span(), super::dimensions::unit_words(found))
-                .help(format!(
-                    "write `unit = \"{}\"`",
-                    natural_unit(found, &typed.expr, coordinates).text
-                )),
+                finding
+                    .at(written.span, super::dimensions::unit_words(wanted))
+                    .at(typed.span(), super::dimensions::unit_words(found))
+                    .help(help),
             );
         }
         (Some(written.value.clone()), typed.expr)
@@ -408,17 +408,17 @@ impl<'a> Resolver<'a> {
 
     /// Reports a range that excludes the default initial value 0.
     fn start_outside(&mut self, item: &ItemAst) {
+        let message = format!("`{}` would start at 0, outside its range", item.name.value);
+        let help = "write `initial = …` with a value inside the range";
+        let finding = Diagnostic::error(Code::ValueOutsideLimits, message);
         self.tell(
-            Diagnostic::error(
-                Code::ValueOutsideLimits,
-                format!("`{}` would start at 0, outside its range", item.name.value),
-            )
-            .at(item.name.span.clone(), "has no initial value")
-            .at(
-                item.entry("range").map_or(0..0, |e| e.span.clone()),
-                "this range",
-            )
-            .help("write `initial = …` with a value inside the range"),
+            finding
+                .at(item.name.span.clone(), "has no initial value")
+                .at(
+                    item.entry("range").map_or(0..0, |e| e.span.clone()),
+                    "this range",
+                )
+                .help(help),
         );
     }
 
@@ -431,14 +431,13 @@ impl<'a> Resolver<'a> {
             .and_then(|i| i.number("value"));
         let own = item.number("initial");
         if let (Some(own), Some(listed)) = (&own, &listed) {
+            let message = format!("`{}` has two initial values", item.name.value);
+            let finding = Diagnostic::error(Code::ConflictingKeys, message);
             self.tell(
-                Diagnostic::error(
-                    Code::ConflictingKeys,
-                    format!("`{}` has two initial values", item.name.value),
-                )
-                .at(listed.span.clone(), "here")
-                .at(own.span.clone(), "and here")
-                .help("keep one of them"),
+                finding
+                    .at(listed.span.clone(), "here")
+                    .at(own.span.clone(), "and here")
+                    .help("keep one of them"),
             );
         }
         let number = own.or(listed)?;

@@ -18,12 +18,10 @@ struct Step<'a> {
 impl Resolver<'_> {
     /// The sum of the turns from the first frame to the second about their common axis. Constant turns about other
     /// axes may precede and follow.
-    pub(super) fn relative_angle(&mut self, ends: &[Spanned<String>; 2], frames: &[Frame]) -> Expr {
+    pub(super) fn relative_angle(&mut self, ends: [&Spanned<String>; 2], frames: &[Frame]) -> Expr {
         let [first, second] = ends;
         let span = first.span.start..second.span.end;
-        let ids = ends
-            .each_ref()
-            .map(|end| self.find::<FrameId>(&end.value, &end.span));
+        let ids = ends.map(|end| self.find::<FrameId>(&end.value, &end.span));
         let [Some(from), Some(to)] = ids else {
             return Expr::integer(0, span);
         };

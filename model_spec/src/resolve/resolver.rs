@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::ast::{ExprAst, ItemAst, SpecAst};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, Span};
 use crate::mechanism::Interpolation;
 use crate::parse::zero;
@@ -79,6 +79,17 @@ impl<'a> Resolver<'a> {
         if self.findings.len() < MAX_FINDINGS {
             self.findings.push(diagnostic);
         }
+    }
+
+    /// An error at a place, with a remedy.
+    pub(super) fn error(
+        &mut self,
+        code: Code,
+        at: Span,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.tell(Diagnostic::error(code, message).at(at, "").help(help));
     }
 
     /// Line of a position, from 1.

@@ -63,12 +63,9 @@ const fn fixed(
     size: (i64, i64),
 ) -> UnitEntry {
     UnitEntry {
-        symbol,
-        name,
-        powers,
         size,
-        times_pi: false,
         prefixed: false,
+        ..si(symbol, name, powers)
     }
 }
 
@@ -79,12 +76,8 @@ const fn angle(
     size: (i64, i64),
 ) -> UnitEntry {
     UnitEntry {
-        symbol,
-        name,
-        powers,
-        size,
         times_pi: true,
-        prefixed: false,
+        ..fixed(symbol, name, powers, size)
     }
 }
 

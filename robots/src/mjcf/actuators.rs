@@ -2,16 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use appell_spec::{Code, did_you_mean};
-use roxmltree::Attribute;
+use appell_spec::Code;
 
 use crate::model::{Drive, LeftOut, On, Tendon};
 use crate::rotation::is_zero;
-use crate::xml::{Element, children, elements, exactly, numbers, tag};
+use crate::xml::{Element, children, elements, tag};
 
 use super::Reader;
+use super::defaults::Given;
 use super::law::Law;
-use super::schema::{self, ACTUATORS};
+use super::schema::{self, ACTUATORS, has};
 
 /// Attributes of all kinds of actuators that drive a joint or a tendon, and those of each kind.
 const COMMON: &str = "armature class cranklength cranksite ctrllimited ctrlrange damping delay forcelimited forcerange \
@@ -41,31 +41,22 @@ const COMPENSATION: &str =
 const SHARED: &str = "the sum of the forces of several actuators on the tendon is not bounded";
 
 /// Attributes that are read together with actuators.
-const READ: &[&str] = &[
-    "joint/actuatorfrcrange",
-    "joint/actuatorfrclimited",
-    "fixed/actuatorfrcrange",
-    "fixed/actuatorfrclimited",
-    "tendon/actuatorfrcrange",
-    "tendon/actuatorfrclimited",
-    "flag/actuation",
-    "option/actuatorgroupdisable",
-];
+const READ: &str = "joint/actuatorfrcrange joint/actuatorfrclimited fixed/actuatorfrcrange fixed/actuatorfrclimited \
+                    tendon/actuatorfrcrange tendon/actuatorfrclimited flag/actuation option/actuatorgroupdisable";
 
 impl<'x> Reader<'x, '_> {
     /// Bounds, where an attribute gives them and another one, or the order of the two, says that they hold.
     pub(super) fn bounds(
         &self,
-        attribute: &dyn Fn(&str) -> Option<Attribute<'x, 'x>>,
+        given: &Given<'_, 'x>,
         range: &str,
         limited: &str,
     ) -> Option<[f64; 2]> {
         if !self.actuators {
             return None;
         }
-        let given = attribute(range)?;
-        let [from, to] = exactly::<2>(self.findings, &given, "a range, from to,")?;
-        let holds = match attribute(limited).map(|given| given.value()) {
+        let [from, to] = given.exactly(range, "a range, from to,")?;
+        let holds = match given.word(limited) {
             Some("true") => true,
             Some("false") => false,
             _ => self.compiler.autolimits && from < to,
@@ -81,29 +72,17 @@ impl<'x> Reader<'x, '_> {
         let mut drives = Vec::new();
         for element in children(self.root, "actuator").flat_map(elements) {
             let class = self.class(element, "class");
-            let attribute = |key: &str| {
-                let own = element.attribute_node(key);
-                own.or_else(|| self.defaults.of_any(ACTUATORS, class, key))
-            };
-            let gear = attribute("gear").and_then(|given| numbers(self.findings, &given));
+            let given = self.given(element, ACTUATORS, class);
+            let gear = given.numbers("gear");
             let gear = gear.and_then(|all| all.first().copied()).unwrap_or(1.0);
-            let armature = attribute("armature")
-                .and_then(|given| exactly::<1>(self.findings, &given, "`armature`"));
-            let armature = armature.map_or(0.0, |[one]| one * gear * gear);
-            let damping = self
-                .polynomial(attribute("damping"))
-                .map(|one| one * gear * gear);
+            let armature = given
+                .number("armature")
+                .map_or(0.0, |one| one * gear * gear);
+            let damping = given.polynomial("damping").map(|one| one * gear * gear);
             // Of several transmissions, the last one holds.
-            let ways = [
-                "joint",
-                "jointinparent",
-                "tendon",
-                "cranksite",
-                "site",
-                "body",
-            ];
-            let given = ways.iter().rev();
-            let way = given.copied().find(|key| element.attribute(*key).is_some());
+            let ways = "body site cranksite tendon jointinparent joint";
+            let mut ways = ways.split_ascii_whitespace();
+            let way = ways.find(|key| element.attribute(*key).is_some());
             let target = way.and_then(|key| element.attribute(key));
             let link = target.filter(|_| matches!(way, Some("joint" | "jointinparent")));
             let link = link.and_then(|name| self.joint_links.get(name).copied());
@@ -120,12 +99,10 @@ impl<'x> Reader<'x, '_> {
                 (on, tendon.range, &mut tendon.armature, &mut tendon.damping)
             } else {
                 if armature != 0.0 || !is_zero(damping) {
-                    self.findings.warning(
-                        Code::NotAllowedHere,
-                        tag(element),
-                        "inertia and damping of this drive are left out",
-                        "they are read where it drives a hinge, a slide or a fixed tendon",
-                    );
+                    let message = "inertia and damping of this drive are left out";
+                    let help = "they are read where it drives a hinge, a slide or a fixed tendon";
+                    self.findings
+                        .warning(Code::NotAllowedHere, tag(element), message, help);
                 }
                 self.leave_out_drive(element, OTHER_WAY);
                 continue;
@@ -144,8 +121,7 @@ impl<'x> Reader<'x, '_> {
             return None;
         }
         // What these say is read, except of spatial tendons.
-        self.left_out
-            .retain(|one| !READ.contains(&one.what.as_str()));
+        self.left_out.retain(|one| !has(READ, &one.what));
         for tendon in tendons {
             let on = On::Tendon(tendon.name.clone());
             let count = drives.iter().filter(|drive| drive.on == on).count();
@@ -217,30 +193,23 @@ impl<'x> Reader<'x, '_> {
             return None;
         };
         let name = self.drive_name(element, &on);
-        let attribute = |key: &str| {
-            let own = element.attribute_node(key);
-            own.or_else(|| self.defaults.of_any(ACTUATORS, class, key))
-        };
-        let number = |key: &str| {
-            let given = attribute(key)?;
-            exactly::<1>(self.findings, &given, &format!("`{key}`")).map(|[number]| number)
-        };
+        let given = self.given(element, ACTUATORS, class);
         Some(Drive {
             name,
             kind: kind.to_owned(),
             gear,
             gain,
             bias,
-            ctrl_range: self.commands(&attribute, &law, range),
+            ctrl_range: self.commands(&given, &law, range),
             act_range: self
-                .bounds(&attribute, "actrange", "actlimited")
+                .bounds(&given, "actrange", "actlimited")
                 .filter(|_| law.filter_type != "none"),
             force_range: match law.motor.bound() {
                 Some(bound) => Some([-bound, bound]),
-                None => self.bounds(&attribute, "forcerange", "forcelimited"),
+                None => self.bounds(&given, "forcerange", "forcelimited"),
             },
             lag: law.lag(),
-            delay: number("delay").unwrap_or_default(),
+            delay: given.number("delay").unwrap_or_default(),
             place: tag(element),
             on,
         })
@@ -266,38 +235,33 @@ impl<'x> Reader<'x, '_> {
     /// Bounds of the command: those of its own, or those of its joint or tendon.
     fn commands(
         &self,
-        attribute: &dyn Fn(&str) -> Option<Attribute<'x, 'x>>,
+        given: &Given<'_, 'x>,
         law: &Law,
         length_range: Option<[f64; 2]>,
     ) -> Option<[f64; 2]> {
         if schema::disabled(self.root, "clampctrl") {
             return None;
         }
-        let share = attribute("inheritrange")
-            .and_then(|given| exactly::<1>(self.findings, &given, "`inheritrange`"));
-        if let Some([share]) = share.filter(|[share]| *share > 0.0) {
+        let share = given.number("inheritrange");
+        if let Some(share) = share.filter(|share| *share > 0.0) {
             let [from, to] = length_range?;
             let (middle, half) = (f64::midpoint(from, to), share * (to - from) / 2.0);
             return Some([middle - half, middle + half]);
         }
         if law.bounded {
-            let given = attribute("ctrlrange")?;
-            return exactly(self.findings, &given, "a range, from to,");
+            return given.exactly("ctrlrange", "a range, from to,");
         }
-        self.bounds(attribute, "ctrlrange", "ctrllimited")
+        self.bounds(given, "ctrlrange", "ctrllimited")
     }
 
     /// Whether actuators, or those of its group, are switched off in `option`.
     fn switched_off(&self, element: Element<'x>, class: Option<&'x str>) -> bool {
-        let own = element.attribute("group");
-        let of_class = self.defaults.of_any(ACTUATORS, class, "group");
-        let group = own.or(of_class.map(|given| given.value())).unwrap_or("0");
+        let given = self.given(element, ACTUATORS, class);
+        let group = given.word("group").unwrap_or("0");
         let off = children(self.root, "option")
             .filter_map(|option| option.attribute("actuatorgroupdisable"));
         schema::disabled(self.root, "actuation")
-            || off
-                .last()
-                .is_some_and(|groups| groups.split_ascii_whitespace().any(|one| one == group))
+            || off.last().is_some_and(|groups| has(groups, group))
     }
 
     /// Refuses attributes that the kind does not have.
@@ -306,21 +270,11 @@ impl<'x> Reader<'x, '_> {
         let Some((_, own)) = OWN.iter().find(|(name, _)| *name == kind) else {
             return;
         };
-        let known = || {
-            let all = [COMMON, own].into_iter();
-            all.flat_map(str::split_ascii_whitespace)
-        };
+        let all = [COMMON, own];
         for attribute in element.attributes() {
-            let key = attribute.name();
-            if !known().any(|one| one == key) {
-                self.findings.error(
-                    Code::UnknownKey,
-                    attribute.range(),
-                    format!("`{kind}` has no attribute `{}`", appell_spec::shown(key)),
-                    did_you_mean(key, known(), || {
-                        "MuJoCo 4.0 does not know it: remove it, or correct its name".to_owned()
-                    }),
-                );
+            if !all.iter().any(|words| has(words, attribute.name())) {
+                let known = all.into_iter().flat_map(str::split_ascii_whitespace);
+                schema::unknown_attribute(kind, &attribute, known, self.findings);
             }
         }
     }

@@ -3,7 +3,7 @@
 use appell_spec::{Code, did_you_mean};
 
 use crate::inertia::Inertia;
-use crate::xml::{Element, Findings, children, exactly, tag};
+use crate::xml::{Element, Findings, children, exactly, number, tag};
 
 use super::orientation::Angles;
 
@@ -56,10 +56,7 @@ impl Compiler {
 
     fn add(&mut self, element: Element<'_>, findings: &Findings) {
         let word = |key: &str, words: &[&str]| word_of(element, key, words, findings);
-        let number = |key: &str| {
-            let given = element.attribute_node(key)?;
-            exactly::<1>(findings, &given, &format!("`{key}`")).map(|[number]| number)
-        };
+        let number = |key: &str| number(findings, element, key);
         if let Some(unit) = word("angle", &["degree", "radian"]) {
             self.angles.degrees = unit == 0;
         }
@@ -75,12 +72,8 @@ impl Compiler {
         }
         if word("coordinate", &["local", "global"]) == Some(1) {
             let help = "global coordinates were removed from the format: save the file anew with MuJoCo 2.3 or older";
-            findings.error(
-                Code::NotAllowedHere,
-                tag(element),
-                "`coordinate=\"global\"` is not read",
-                help,
-            );
+            let message = "`coordinate=\"global\"` is not read";
+            findings.error(Code::NotAllowedHere, tag(element), message, help);
         }
         if let Some(given) = element.attribute_node("eulerseq") {
             self.angles.read_sequence(&given, findings);
@@ -129,14 +122,11 @@ pub(super) fn word_of(
     let given = element.attribute_node(key)?;
     let found = words.iter().position(|word| *word == given.value());
     if found.is_none() {
-        findings.error(
-            Code::UnknownWord,
-            given.range_value(),
-            format!("`{key}` cannot be `{}`", appell_spec::shown(given.value())),
-            did_you_mean(given.value(), words.iter().copied(), || {
-                format!("write {}", words.join(" or "))
-            }),
-        );
+        let message = format!("`{key}` cannot be `{}`", appell_spec::shown(given.value()));
+        let help = did_you_mean(given.value(), words.iter().copied(), || {
+            format!("write {}", words.join(" or "))
+        });
+        findings.error(Code::UnknownWord, given.range_value(), message, help);
     }
     found
 }

@@ -34,7 +34,7 @@ use crate::urdf;
 use crate::xml::{self, Findings, parse};
 
 use bytes::Edits;
-pub use change::{Amount, Change, JointNumber};
+pub use change::{Amount, Change, Number};
 use change::{Refused, refused};
 use sheet::Sheet;
 
@@ -51,17 +51,13 @@ pub struct Corrected {
 /// those of `text`. `others` reads the files that it includes; an element in one of them cannot be changed.
 ///
 /// ```
-/// use appell_robots::{Amount, Change, JointNumber, corrected};
+/// use appell_robots::{Amount, Change, Number, corrected};
 ///
 /// let door = r#"<mujoco>
 ///   <worldbody><body name="leaf"><inertial pos="0.4 0 0" mass="20" diaginertia="0.1 1.1 1.1"/>
 ///     <joint name="hinge" axis="0 0 1"   damping="0.5" /> <!-- as measured -->
 ///   </body></worldbody></mujoco>"#;
-/// let friction = Change::Joint {
-///     joint: "hinge".to_owned(),
-///     attribute: JointNumber::Frictionloss,
-///     amount: Amount::Add(0.2),
-/// };
+/// let friction = Change::number("hinge", Number::Frictionloss, Amount::Add(0.2));
 /// let none = |_: &str| Err("only this text is read".to_owned());
 /// let better = corrected("door.xml", door, &[friction], &[], &none).unwrap();
 /// assert!(better.text.contains(r#"damping="0.5" frictionloss="0.2" /> <!-- as measured -->"#));
@@ -93,7 +89,7 @@ pub fn corrected(
         );
         let help = "corrections are written into files that begin with `<mujoco>` or `<robot>`";
         let error = refused(Code::NotAllowedHere, xml::tag(root), message, help);
-        return Err(fail(vec![*error]));
+        return Err(fail(vec![error]));
     };
     let mut edits = Edits::default();
     edits.remark(text, remarks);
@@ -117,15 +113,14 @@ pub fn corrected(
     }
     let mut sheet = Sheet::new(root, format, &whole, text, robot, &findings);
     for change in changes {
-        sheet.change(change).map_err(|error| fail(vec![*error]))?;
+        sheet.change(change).map_err(|error| fail(vec![error]))?;
     }
-    sheet.finish().map_err(|error| fail(vec![*error]))?;
-    let said = sheet
-        .write(&mut edits)
-        .map_err(|error| fail(vec![*error]))?;
+    sheet.finish().map_err(|error| fail(vec![error]))?;
+    let said = sheet.write(&mut edits);
+    let edits_of = said.map_err(|error| fail(vec![error]))?;
     Ok(Corrected {
         text: edits.applied(text),
-        edits: said,
+        edits: edits_of,
     })
 }
 
@@ -150,45 +145,48 @@ impl Sheet<'_, '_> {
                 self.format.word()
             );
             let help = "it has inertias of links, and damping and friction of joints";
-            return Err(refused(
-                Code::NotAllowedHere,
-                xml::tag(self.root),
-                message,
-                help,
-            ));
+            let place = xml::tag(self.root);
+            return Err(refused(Code::NotAllowedHere, place, message, help));
         }
         match change {
-            Change::Joint {
-                joint,
-                attribute,
-                amount,
-            } if self.format == Format::Urdf => self.dynamics(joint, *attribute, *amount),
-            Change::Joint {
-                joint,
-                attribute,
-                amount,
-            } => self.joint_number(joint, *attribute, *amount),
+            Change::Number { of, number, amount } => self.number(of, *number, *amount),
             Change::Spring {
                 joint,
                 stiffness,
                 relaxed_at,
             } => self.spring(joint, *stiffness, *relaxed_at),
-            Change::Reading { joint, bias } => self.reading(joint, *bias),
-            Change::Play { joint, gap } => self.play(joint, *gap),
-            Change::Mass { body, amount } => self.mass(body, *amount),
             Change::Centre { body, amounts } => self.centre(body, *amounts),
-            Change::Inertia { body, factor } => self.inertia_times(body, *factor),
             Change::Payload { body, mass, at } => self.payload(body, *mass, *at),
-            Change::Kp { actuator, amount } => self.kp(actuator, *amount),
-            Change::Kv { actuator, amount } => self.kv(actuator, *amount),
-            Change::Gear { actuator, amount } => self.gear(actuator, *amount),
-            Change::Gain { actuator, factor } => self.gain(actuator, *factor),
-            Change::Bias { actuator, add } => self.bias(actuator, *add),
-            Change::Lag { actuator, seconds } => self.lag(actuator, *seconds),
-            Change::Delay { actuator, seconds } => self.delay(actuator, *seconds),
-            Change::ForceRange { actuator, amount } => self.force_range_by(actuator, *amount),
             Change::ForceLimit { actuator, range } => self.force_limit(actuator, *range),
             Change::Gravity(gravity) => self.gravity(*gravity),
+        }
+    }
+
+    fn number(&mut self, of: &str, number: Number, amount: Amount) -> Result<(), Refused> {
+        let joint_number: fn(&mut Self, &str, Number, Amount) -> Result<(), Refused> =
+            match self.format {
+                Format::Urdf => Self::dynamics,
+                Format::Mjcf => Self::joint_number,
+            };
+        match number {
+            Number::Damping
+            | Number::Frictionloss
+            | Number::Armature
+            | Number::Stiffness
+            | Number::Springref
+            | Number::Ref => joint_number(self, of, number, amount),
+            Number::Reading => self.reading(of, amount.of(0.0)),
+            Number::Play => self.play(of, amount.of(0.0)),
+            Number::Mass => self.mass(of, amount),
+            Number::Inertia => self.inertia_times(of, amount.of(1.0)),
+            Number::Kp => self.kp(of, amount),
+            Number::Kv => self.kv(of, amount),
+            Number::Gear => self.gear(of, amount),
+            Number::Gain => self.gain(of, amount.of(1.0)),
+            Number::Bias => self.bias(of, amount.of(0.0)),
+            Number::Lag => self.lag(of, amount),
+            Number::Delay => self.delay(of, amount),
+            Number::ForceRange => self.force_range_by(of, amount),
         }
     }
 }

@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use appell_spec::Code;
 use roxmltree::Attribute;
 
-use crate::xml::{Element, Findings, children, tag};
+use crate::model::Polynomial;
+use crate::xml::{Element, Findings, Span, children, elements, exactly, numbers, tag};
+
+use super::schema::has;
 
 /// The class of elements that name none.
 const MAIN: &str = "main";
@@ -37,12 +40,8 @@ impl<'x> Defaults<'x> {
                 (None, None) => MAIN,
                 (None, Some(_)) => {
                     let help = "write `<default class=\"…\">`";
-                    findings.error(
-                        Code::MissingKey,
-                        tag(element),
-                        "a default class without a name",
-                        help,
-                    );
+                    let message = "a default class without a name";
+                    findings.error(Code::MissingKey, tag(element), message, help);
                     continue;
                 }
             };
@@ -53,9 +52,7 @@ impl<'x> Defaults<'x> {
             class.parent = class.parent.or(parent);
             let inner = children(element, "default").map(|inner| (inner, Some(name)));
             let inner: Vec<_> = inner.collect();
-            let own = element
-                .children()
-                .filter(|child| child.is_element() && child.tag_name().name() != "default");
+            let own = elements(element).filter(|child| !child.has_tag_name("default"));
             class.elements.extend(own);
             open.extend(inner.into_iter().rev());
         }
@@ -70,16 +67,6 @@ impl<'x> Defaults<'x> {
         self.classes.keys().copied()
     }
 
-    /// The default of a class for an attribute of a kind of element.
-    pub(super) fn attribute(
-        &self,
-        kind: &str,
-        class: Option<&str>,
-        key: &str,
-    ) -> Option<Attribute<'x, 'x>> {
-        self.of_any(kind, class, key)
-    }
-
     /// The default of a class for an attribute of any of several kinds of elements, separated by blanks.
     pub(super) fn of_any(
         &self,
@@ -87,7 +74,6 @@ impl<'x> Defaults<'x> {
         class: Option<&str>,
         key: &str,
     ) -> Option<Attribute<'x, 'x>> {
-        let is_one = |name: &str| kinds.split_ascii_whitespace().any(|kind| kind == name);
         let mut name = class.or(self.main)?;
         // Classes are nested in the text, so that this ends.
         loop {
@@ -96,7 +82,7 @@ impl<'x> Defaults<'x> {
                 .elements
                 .iter()
                 .rev()
-                .filter(|element| is_one(element.tag_name().name()));
+                .filter(|element| has(kinds, element.tag_name().name()));
             if let Some(found) = own.find_map(|element| element.attribute_node(key)) {
                 return Some(found);
             }
@@ -110,14 +96,64 @@ impl<'x> Defaults<'x> {
         let mut chain = Vec::new();
         // Classes are nested in the text, so that this ends.
         while let Some(class) = name.and_then(|name| self.classes.get(name)) {
-            let own = class.elements.iter().rev().filter(|element| {
-                let word = element.tag_name().name();
-                kinds.split_ascii_whitespace().any(|kind| kind == word)
-            });
+            let own = class.elements.iter().rev();
+            let own = own.filter(|element| has(kinds, element.tag_name().name()));
             chain.extend(own.copied());
             name = class.parent.filter(|parent| Some(*parent) != name);
         }
         chain.reverse();
         chain
+    }
+}
+
+/// The attributes of an element, with the defaults of its class for those that are missing.
+#[derive(Clone, Copy)]
+pub(super) struct Given<'r, 'x> {
+    pub(super) element: Element<'x>,
+    /// The names of elements of its kind in classes, separated by blanks.
+    pub(super) kinds: &'static str,
+    pub(super) class: Option<&'x str>,
+    pub(super) defaults: &'r Defaults<'x>,
+    pub(super) findings: &'r Findings,
+}
+
+impl<'x> Given<'_, 'x> {
+    pub(super) fn attribute(&self, key: &str) -> Option<Attribute<'x, 'x>> {
+        let own = self.element.attribute_node(key);
+        own.or_else(|| self.defaults.of_any(self.kinds, self.class, key))
+    }
+
+    pub(super) fn word(&self, key: &str) -> Option<&'x str> {
+        self.attribute(key).map(|given| given.value())
+    }
+
+    /// The place of a value, or of the element where there is none.
+    pub(super) fn place(&self, key: &str) -> Span {
+        let given = self.attribute(key);
+        given.map_or_else(|| tag(self.element), |given| given.range_value())
+    }
+
+    pub(super) fn numbers(&self, key: &str) -> Option<Vec<f64>> {
+        numbers(self.findings, &self.attribute(key)?)
+    }
+
+    /// A fixed number of numbers, which are `what` in messages.
+    pub(super) fn exactly<const N: usize>(&self, key: &str, what: &str) -> Option<[f64; N]> {
+        exactly(self.findings, &self.attribute(key)?, what)
+    }
+
+    pub(super) fn number(&self, key: &str) -> Option<f64> {
+        let [number] = self.exactly(key, &format!("`{key}`"))?;
+        Some(number)
+    }
+
+    /// Up to three factors.
+    pub(super) fn polynomial(&self, key: &str) -> Polynomial {
+        let mut polynomial = [0.0; 3];
+        let read = self.numbers(key).into_iter().flatten();
+        for (factor, read) in polynomial.iter_mut().zip(read) {
+            *factor = read;
+        }
+        polynomial
     }
 }

@@ -1,11 +1,11 @@
 //! Constraints between joints and between bodies.
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 
 use crate::loops::drawn;
 use crate::model::{Connection, Coupling, Link, Sum, Tendon};
 use crate::rotation::{Pose, Rotation, Vector, minus};
-use crate::xml::{Element, children, elements, exactly, numbers, tag};
+use crate::xml::{Element, children, elements, exactly, no_such, number, numbers, tag};
 
 use super::Reader;
 
@@ -28,9 +28,8 @@ pub(super) fn read<'x>(
     let mut read = Equality::default();
     for element in children(root, "equality").flat_map(elements) {
         let class = reader.class(element, "class");
-        let active = element.attribute_node("active");
-        let active = active.or_else(|| reader.defaults.attribute("equality", class, "active"));
-        if active.is_some_and(|given| given.value() == "false") {
+        let given = reader.given(element, "equality", class);
+        if given.word("active") == Some("false") {
             reader.leave_out("inactive equality".to_owned(), element);
             continue;
         }
@@ -68,9 +67,8 @@ fn connection<'x>(
         || format!("{}_{}", element.tag_name().name(), count + 1),
         str::to_owned,
     );
-    let scale = element.attribute_node("torquescale");
-    let scale = scale.and_then(|given| exactly::<1>(reader.findings, &given, "`torquescale`"));
-    let rigid = weld && scale != Some([0.0]);
+    let scale = number(reader.findings, element, "torquescale");
+    let rigid = weld && scale != Some(0.0);
     let connected =
         |first: (Option<usize>, Vector), second: Option<usize>, pose: Pose| Connection {
             name,
@@ -164,16 +162,11 @@ fn body(
         .map(|link| link.name.as_str())
         .chain(["world"])
         .collect();
-    let list = || {
-        let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
-        format!("known bodies: {}", names.join(", "))
-    };
-    reader.findings.error(
-        Code::UnknownReference,
-        given.range_value(),
-        format!("there is no body `{}`", appell_spec::shown(given.value())),
-        did_you_mean(given.value(), known.iter().copied(), list),
-    );
+    let list: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+    let list = format!("known bodies: {}", list.join(", "));
+    let (name, at) = (given.value(), given.range_value());
+    let finding = no_such("body", name, at, known.iter().copied(), &list);
+    reader.findings.add(finding);
     Err(Unknown)
 }
 
@@ -238,14 +231,9 @@ impl<'x> Reader<'x, '_> {
         let found = self.sites.get(given.value()).copied();
         if found.is_none() {
             let known = self.sites.keys().map(String::as_str);
-            self.findings.error(
-                Code::UnknownReference,
-                given.range_value(),
-                format!("there is no site `{}`", appell_spec::shown(given.value())),
-                did_you_mean(given.value(), known, || {
-                    "name a site of the file".to_owned()
-                }),
-            );
+            let (name, at) = (given.value(), given.range_value());
+            let help = "name a site of the file";
+            self.findings.add(no_such("site", name, at, known, help));
         }
         found
     }

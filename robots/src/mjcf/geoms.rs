@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use appell_spec::{Code, did_you_mean};
-use roxmltree::Attribute;
+use appell_spec::Code;
 
 use crate::inertia::Inertia;
 use crate::rotation::{Pose, Rotation, Vector, add, dot, minus, scaled, unit};
-use crate::xml::{Element, children, exactly, numbers, tag};
+use crate::xml::{Element, children, exactly, no_such, no_type, tag};
 
+use super::defaults::Given;
 use super::meshes::called;
 use super::{Held, Reader};
 
@@ -42,12 +42,11 @@ impl<'x> Reader<'x, '_> {
     /// Records the position in the file of a geom that could collide.
     pub(super) fn touch(&mut self, geom: Element<'x>, class: Option<&'x str>) {
         let class = self.class(geom, "class").or(class);
-        let touches = |key: &str| {
-            let own = geom.attribute_node(key);
-            let given = own.or_else(|| self.defaults.attribute("geom", class, key));
-            given.is_none_or(|given| given.value() != "0")
-        };
-        if touches("contype") || touches("conaffinity") {
+        let given = self.given(geom, "geom", class);
+        if ["contype", "conaffinity"]
+            .iter()
+            .any(|key| given.word(key) != Some("0"))
+        {
             self.touching.push(tag(geom));
         }
     }
@@ -59,39 +58,27 @@ impl<'x> Reader<'x, '_> {
         class: Option<&'x str>,
         matters: bool,
     ) -> Option<(Inertia, Pose)> {
-        let attribute = |key: &str| {
-            let own = geom.attribute_node(key);
-            own.or_else(|| self.defaults.attribute("geom", class, key))
-        };
-        let number = |key: &str| {
-            let given = attribute(key)?;
-            exactly::<1>(self.findings, &given, &format!("`{key}`")).map(|[number]| number)
-        };
-        let shape = attribute("type").map_or(
-            if attribute("mesh").is_some() {
-                "mesh"
-            } else {
-                "sphere"
-            },
-            |given| given.value(),
-        );
-        let group = number("group").unwrap_or_default();
+        let given = self.given(geom, "geom", class);
+        let mesh = given.word("mesh");
+        let shape = given.word("type");
+        let shape = shape.unwrap_or(if mesh.is_some() { "mesh" } else { "sphere" });
+        let group = given.number("group").unwrap_or_default();
         let [first, last] = self.compiler.groups;
         if !(first..=last).contains(&group) {
             return None;
         }
-        let given_mass = number("mass");
-        let density = number("density").unwrap_or(DENSITY);
+        let given_mass = given.number("mass");
+        let density = given.number("density").unwrap_or(DENSITY);
         let massless = given_mass == Some(0.0) || (given_mass.is_none() && density == 0.0);
         if massless || (shape == "plane" && given_mass.is_none()) {
             return None;
         }
-        let of_surface = attribute("shellinertia").is_some_and(|given| given.value() == "true");
+        let of_surface = given.word("shellinertia") == Some("true");
         let unknown = match shape {
             "mesh" => None,
             _ if of_surface => Some("with `shellinertia`".to_owned()),
             "plane" | "sdf" => Some(format!("of type `{shape}`")),
-            _ => attribute("mesh").map(|_| format!("a {shape} that is fitted to a mesh")),
+            _ => mesh.map(|_| format!("a {shape} that is fitted to a mesh")),
         };
         if let Some(what) = unknown {
             if matters {
@@ -100,9 +87,8 @@ impl<'x> Reader<'x, '_> {
             return None;
         }
         if shape == "mesh" {
-            let name = attribute("mesh").map_or("", |given| given.value());
-            let pose = self.pose(geom, Some(("geom", class)));
-            return match self.mesh(self.root, name) {
+            let pose = self.pose(&given);
+            return match self.mesh(self.root, mesh.unwrap_or_default()) {
                 Ok((volume, one)) => {
                     let mass = given_mass.unwrap_or(density * volume);
                     let tensor = one.tensor.map(|entry| entry * mass);
@@ -124,18 +110,14 @@ impl<'x> Reader<'x, '_> {
             };
         }
         if !SHAPES.contains(&shape) {
-            self.findings.error(
-                Code::UnknownWord,
-                attribute("type").map_or_else(|| tag(geom), |given| given.range_value()),
-                format!("there are no geoms of type `{}`", appell_spec::shown(shape)),
-                did_you_mean(shape, SHAPES, || format!("types are {}", SHAPES.join(", "))),
-            );
+            let place = given.place("type");
+            self.findings.add(no_type("geoms", shape, place, &SHAPES));
             return None;
         }
-        let (pose, half) = self.placed(geom, class)?;
+        let (pose, half) = self.placed(&given)?;
         let size = match shape {
-            "hfield" => self.field(geom, attribute("hfield"))?,
-            _ => self.size(geom, class, shape, half)?,
+            "hfield" => self.field(&given)?,
+            _ => self.size(&given, shape, half)?,
         };
         let (volume, moments) = homogeneous(shape, size);
         let mass = given_mass.unwrap_or(density * volume);
@@ -149,31 +131,25 @@ impl<'x> Reader<'x, '_> {
     }
 
     fn mass_unknown(&self, geom: Element<'_>, what: &str) {
-        self.findings.error(
-            Code::NotAllowedHere,
-            tag(geom),
-            format!("the mass of a geom is not known, {what}"),
-            "give the body an `inertial`, or the geom `mass=\"0\"`",
-        );
+        let message = format!("the mass of a geom is not known, {what}");
+        let help = "give the body an `inertial`, or the geom `mass=\"0\"`";
+        self.findings
+            .error(Code::NotAllowedHere, tag(geom), message, help);
     }
 
     /// Where a geom is, and half its length if it is given by its ends.
-    fn placed(&self, geom: Element<'x>, class: Option<&'x str>) -> Option<(Pose, Option<f64>)> {
-        let ends = geom.attribute_node("fromto");
-        let Some(ends) = ends.or_else(|| self.defaults.attribute("geom", class, "fromto")) else {
-            return Some((self.pose(geom, Some(("geom", class))), None));
+    fn placed(&self, given: &Given<'_, 'x>) -> Option<(Pose, Option<f64>)> {
+        let Some(ends) = given.attribute("fromto") else {
+            return Some((self.pose(given), None));
         };
         let [a, b, c, d, e, f] = exactly(self.findings, &ends, "two ends, x y z x y z,")?;
         let (from, to): (Vector, Vector) = ([a, b, c], [d, e, f]);
         let way = minus(to, from);
         let Some(direction) = unit(way) else {
             let help = "give two different ends, or `pos` and `size`";
-            self.findings.error(
-                Code::VanishingLength,
-                ends.range_value(),
-                "both ends are at one place",
-                help,
-            );
+            let message = "both ends are at one place";
+            self.findings
+                .error(Code::VanishingLength, ends.range_value(), message, help);
             return None;
         };
         let pose = Pose {
@@ -185,21 +161,17 @@ impl<'x> Reader<'x, '_> {
 
     /// Half lengths of the box that a field of heights counts as, whatever its heights: a quarter of the highest one and
     /// half its base.
-    fn field(&self, geom: Element<'x>, named: Option<Attribute<'x, 'x>>) -> Option<Vector> {
-        let name = named.map_or("", |named| named.value());
+    fn field(&self, given: &Given<'_, 'x>) -> Option<Vector> {
+        let name = given.word("hfield").unwrap_or_default();
         let fields = children(self.root, "asset").flat_map(|asset| children(asset, "hfield"));
         let known: Vec<(String, Element<'x>)> = fields
             .filter_map(|field| Some((called(field)?, field)))
             .collect();
         let Some((_, field)) = known.iter().find(|(own, _)| own == name) else {
-            self.findings.error(
-                Code::UnknownReference,
-                named.map_or_else(|| tag(geom), |named| named.range_value()),
-                format!("there is no `hfield` `{}`", appell_spec::shown(name)),
-                did_you_mean(name, known.iter().map(|(own, _)| own.as_str()), || {
-                    "name one of the assets".to_owned()
-                }),
-            );
+            let known = known.iter().map(|(own, _)| own.as_str());
+            let (at, help) = (given.place("hfield"), "name one of the assets");
+            self.findings
+                .add(no_such("`hfield`", name, at, known, help));
             return None;
         };
         let size = field.attribute_node("size");
@@ -207,29 +179,21 @@ impl<'x> Reader<'x, '_> {
         let [x, y, top, base] = if let Some(given) = size {
             exactly(self.findings, &given, what)?
         } else {
-            self.findings.error(
-                Code::MissingKey,
-                tag(*field),
+            let (message, help) = (
                 "`hfield` has no `size`",
                 "write `size=\"x y height base\"`, in m",
             );
+            self.findings
+                .error(Code::MissingKey, tag(*field), message, help);
             return None;
         };
         Some([x, y, 0.25 * top + 0.5 * base])
     }
 
     /// Radii and half lengths along the own axes.
-    fn size(
-        &self,
-        geom: Element<'x>,
-        class: Option<&'x str>,
-        shape: &str,
-        half: Option<f64>,
-    ) -> Option<Vector> {
-        let own = geom.attribute_node("size");
-        let given = own.or_else(|| self.defaults.attribute("geom", class, "size"));
-        let sizes = match &given {
-            Some(given) => numbers(self.findings, given)?,
+    fn size(&self, given: &Given<'_, 'x>, shape: &str, half: Option<f64>) -> Option<Vector> {
+        let sizes = match given.attribute("size") {
+            Some(_) => given.numbers("size")?,
             None => Vec::new(),
         };
         let needs = match shape {
@@ -241,15 +205,11 @@ impl<'x> Reader<'x, '_> {
         };
         let whole = sizes.len() >= needs && sizes.iter().take(needs).all(|size| *size > 0.0);
         if !whole {
-            let at = given.map_or_else(|| tag(geom), |given| given.range_value());
             let plural = if needs == 1 { "number" } else { "numbers" };
             let message = format!("the size of a {shape} has {needs} positive {plural}");
-            self.findings.error(
-                Code::WrongType,
-                at,
-                message,
-                "write `size=\"…\"`: radii and half lengths in m",
-            );
+            let help = "write `size=\"…\"`: radii and half lengths in m";
+            self.findings
+                .error(Code::WrongType, given.place("size"), message, help);
             return None;
         }
         let at = |index: usize| sizes.get(index).copied().unwrap_or(sizes[0]);

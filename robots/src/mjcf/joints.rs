@@ -1,12 +1,13 @@
 //! Hinge, slide, ball and free joints.
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 use roxmltree::Attribute;
 
 use crate::model::{Joint, Motion};
-use crate::rotation::{Vector, is_zero, unit};
-use crate::xml::{Element, exactly, tag};
+use crate::rotation::{is_zero, unit};
+use crate::xml::{Element, no_type, tag};
 
+use super::defaults::Given;
 use super::{Held, Reader};
 
 impl<'x> Reader<'x, '_> {
@@ -51,80 +52,50 @@ impl<'x> Reader<'x, '_> {
         name: String,
         class: Option<&'x str>,
     ) -> Option<Joint> {
-        let attribute = |key: &str| {
-            let own = element.attribute_node(key);
-            own.or_else(|| self.defaults.attribute("joint", class, key))
+        let given = self.given(element, "joint", class);
+        let motion = self.motion(element, given.attribute("type"))?;
+        let joint = Joint {
+            anchor: given
+                .exactly("pos", "a position, x y z,")
+                .unwrap_or_default(),
+            damping: given.polynomial("damping"),
+            stiffness: given.polynomial("stiffness"),
+            armature: given.number("armature").unwrap_or_default(),
+            friction: given.number("frictionloss").unwrap_or_default(),
+            settles: springdamper(&given),
+            place: tag(element),
+            ..Joint::along(name, motion, [1.0, 0.0, 0.0])
         };
-        let number = |key: &str| {
-            let given = attribute(key)?;
-            exactly::<1>(self.findings, &given, &format!("`{key}`")).map(|[number]| number)
-        };
-        let vector = |key: &str, what: &str| {
-            let given = attribute(key)?;
-            exactly::<3>(self.findings, &given, what)
-        };
-        let kind = attribute("type");
-        let motion = self.motion(element, kind)?;
-        let polynomial = |key: &str| self.polynomial(attribute(key));
-        let friction = number("frictionloss").unwrap_or_default();
-        let armature = number("armature").unwrap_or_default();
+        let limited = given.word("limited");
         if !motion.has_axis() {
-            let joint = Joint {
-                anchor: vector("pos", "a position, x y z,").unwrap_or_default(),
-                damping: polynomial("damping"),
-                stiffness: polynomial("stiffness"),
-                armature,
-                friction,
-                settles: self.springdamper(&attribute),
-                place: tag(element),
-                ..Joint::along(name, motion, [1.0, 0.0, 0.0])
-            };
-            let free = attribute("limited").is_some_and(|given| given.value() == "false");
-            let limited = motion == Motion::Ball && attribute("range").is_some() && !free;
-            return Some(self.without_axis(joint, limited));
+            let ranged = motion == Motion::Ball && given.attribute("range").is_some();
+            return Some(self.without_axis(joint, ranged && limited != Some("false")));
         }
         let angle = |value: f64| match motion {
             Motion::Turning => self.compiler.angles.radians(value),
             _ => value,
         };
-        let along: Vector = vector("axis", "a direction, x y z,").unwrap_or([0.0, 0.0, 1.0]);
-        let axis = unit(along).unwrap_or_else(|| {
-            let at = attribute("axis").map_or_else(|| tag(element), |given| given.range_value());
-            let message = format!("the axis of joint `{name}` has length zero");
-            self.findings.error(
-                Code::VanishingLength,
-                at,
-                message,
-                "give its direction, such as `0 0 1`",
-            );
+        let along = given.exactly("axis", "a direction, x y z,");
+        let axis = unit(along.unwrap_or([0.0, 0.0, 1.0])).unwrap_or_else(|| {
+            let message = format!("the axis of joint `{}` has length zero", joint.name);
+            let help = "give its direction, such as `0 0 1`";
+            self.findings
+                .error(Code::VanishingLength, given.place("axis"), message, help);
             [0.0, 0.0, 1.0]
         });
-        let limited = attribute("limited").map(|given| given.value() == "true");
-        let range = attribute("range");
-        let range =
-            range.and_then(|given| exactly::<2>(self.findings, &given, "a range, from to,"));
-        let auto = self.compiler.autolimits && range.is_some_and(|[from, to]| from < to);
-        let limited = match attribute("limited").map(|given| given.value()) {
-            Some("auto") | None => auto,
-            _ => limited == Some(true),
+        let range = given.exactly::<2>("range", "a range, from to,");
+        let limited = match limited {
+            Some("auto") | None => self.compiler.autolimits,
+            Some(word) => word == "true",
         };
+        let range = range.filter(|[from, to]| limited && from < to);
         Some(Joint {
-            motion,
             axis,
-            drive_range: self.bounds(&attribute, "actuatorfrcrange", "actuatorfrclimited"),
-            anchor: vector("pos", "a position, x y z,").unwrap_or_default(),
-            zero: angle(number("ref").unwrap_or_default()),
-            range: range
-                .filter(|[from, to]| limited && from < to)
-                .map(|range| range.map(angle)),
-            damping: polynomial("damping"),
-            armature,
-            friction,
-            stiffness: polynomial("stiffness"),
-            settles: self.springdamper(&attribute),
-            place: tag(element),
-            relaxed: angle(number("springref").unwrap_or_default()),
-            name,
+            drive_range: self.bounds(&given, "actuatorfrcrange", "actuatorfrclimited"),
+            zero: angle(given.number("ref").unwrap_or_default()),
+            range: range.map(|range| range.map(angle)),
+            relaxed: angle(given.number("springref").unwrap_or_default()),
+            ..joint
         })
     }
 
@@ -144,14 +115,12 @@ impl<'x> Reader<'x, '_> {
                     ""
                 };
                 let name = &joint.name;
-                self.findings.warning(
-                    Code::NotAllowedHere,
-                    joint.place.clone(),
-                    format!(
-                        "`{what}`{which} of joint `{name}` is left out, which changes the motion"
-                    ),
-                    "it needs a hinge or a slide; add a load to the spec",
+                let message = format!(
+                    "`{what}`{which} of joint `{name}` is left out, which changes the motion"
                 );
+                let help = "it needs a hinge or a slide; add a load to the spec";
+                self.findings
+                    .warning(Code::NotAllowedHere, joint.place.clone(), message, help);
             }
         }
         Joint {
@@ -164,17 +133,6 @@ impl<'x> Reader<'x, '_> {
             },
             ..joint
         }
-    }
-
-    /// Time constant and damping ratio of a spring with a damper, where both are positive.
-    fn springdamper(
-        &self,
-        attribute: &dyn Fn(&str) -> Option<Attribute<'x, 'x>>,
-    ) -> Option<[f64; 2]> {
-        let given = attribute("springdamper")?;
-        let what = "a time constant and a damping ratio";
-        exactly(self.findings, &given, what)
-            .filter(|both: &[f64; 2]| both.iter().all(|one| *one > 0.0))
     }
 
     fn motion(&self, element: Element<'x>, kind: Option<Attribute<'_, '_>>) -> Option<Motion> {
@@ -192,17 +150,15 @@ impl<'x> Reader<'x, '_> {
             "free" => Some(Motion::Free),
             other => {
                 let kinds = ["hinge", "slide", "ball", "free"];
-                self.findings.error(
-                    Code::UnknownWord,
-                    at,
-                    format!(
-                        "there are no joints of type `{}`",
-                        appell_spec::shown(other)
-                    ),
-                    did_you_mean(other, kinds, || format!("types are {}", kinds.join(", "))),
-                );
+                self.findings.add(no_type("joints", other, at, &kinds));
                 None
             }
         }
     }
+}
+
+/// Time constant and damping ratio of a spring with a damper, where both are positive.
+fn springdamper(given: &Given<'_, '_>) -> Option<[f64; 2]> {
+    let both = given.exactly("springdamper", "a time constant and a damping ratio");
+    both.filter(|both: &[f64; 2]| both.iter().all(|one| *one > 0.0))
 }

@@ -1,20 +1,13 @@
 //! The law of an actuator, as its element and the defaults of its class define it.
 
 use crate::model::is;
-use crate::xml::{Element, Findings, exactly, numbers};
+use crate::xml::{Element, Findings, number, numbers};
 
 use super::defaults::Defaults;
 use super::schema::ACTUATORS;
 
 /// What makes a `dcmotor` another one than a gain and a back-EMF, and the words with which it does not.
-const NO_MERE_MOTOR: &[&str] = &[
-    "cogging",
-    "controller",
-    "inductance",
-    "input",
-    "lugre",
-    "thermal",
-];
+const NO_MERE_MOTOR: &str = "cogging controller inductance input lugre thermal";
 
 /// Force = gain · command + bias; of either a constant, a factor of the length, and one of its rate.
 #[derive(Debug, Clone)]
@@ -115,10 +108,7 @@ impl Law {
 
     /// Applies an element, as the functions `mjs_setTo…` of `MuJoCo` do.
     fn apply(&mut self, element: Element<'_>, findings: &Findings) {
-        let number = |key: &str| {
-            let given = element.attribute_node(key)?;
-            exactly::<1>(findings, &given, &format!("`{key}`")).map(|[number]| number)
-        };
+        let number = |key: &str| number(findings, element, key);
         let some = |key: &str, into: &mut [f64; 3]| {
             let given = element.attribute_node(key);
             let read = given.and_then(|given| numbers(findings, &given));
@@ -193,12 +183,12 @@ impl Law {
                 some("motorconst", &mut self.motor.constants);
                 some("nominal", &mut self.motor.nominal);
                 some("saturation", &mut self.motor.saturation);
-                let acts = |key: &&str| {
-                    let given = element.attribute(*key).unwrap_or_default();
+                let acts = |key: &str| {
+                    let given = element.attribute(key).unwrap_or_default();
                     let mut words = given.split_ascii_whitespace();
                     words.any(|word| word != "voltage" && word.parse() != Ok(0.0))
                 };
-                self.other = NO_MERE_MOTOR.iter().any(acts);
+                self.other = NO_MERE_MOTOR.split_ascii_whitespace().any(acts);
                 self.types("dcmotor", "none", "none");
             }
             _ => {

@@ -3,7 +3,7 @@
 
 use crate::inertia::{Inertia, of_triangles};
 use crate::rotation::{Vector, add, cross, dot, minus, scaled};
-use crate::xml::{Element, children, exactly};
+use crate::xml::{Element, children};
 
 use super::Reader;
 
@@ -22,15 +22,10 @@ impl<'x> Reader<'x, '_> {
             .into_iter()
             .find(|mesh| called(*mesh).as_deref() == Some(name))
             .ok_or_else(|| format!("there is no mesh `{}`", appell_spec::shown(name)))?;
-        let attribute = |key: &str| {
-            let own = element.attribute_node(key);
-            own.or_else(|| {
-                self.defaults
-                    .attribute("mesh", element.attribute("class"), key)
-            })
-        };
-        let scale = match attribute("scale") {
-            Some(given) => exactly(self.findings, &given, "three factors, x y z,")
+        let given = self.given(element, "mesh", element.attribute("class"));
+        let scale = match given.attribute("scale") {
+            Some(_) => given
+                .exactly("scale", "three factors, x y z,")
                 .ok_or("its scale is not known")?,
             None => [1.0; 3],
         };
@@ -39,11 +34,13 @@ impl<'x> Reader<'x, '_> {
             ("refpos", "0 0 0"),
             ("refquat", "1 0 0 0"),
         ] {
-            if attribute(key).is_some_and(|given| given.value() != usual) {
+            if given.word(key).is_some_and(|word| word != usual) {
                 return Err(format!("its `{key}` is read as `{usual}` only"));
             }
         }
-        let file = attribute("file").ok_or("a mesh without a file is not read")?;
+        let file = given
+            .attribute("file")
+            .ok_or("a mesh without a file is not read")?;
         let compiler = |key: &str| {
             let all = children(root, "compiler").filter_map(|element| element.attribute(key));
             all.last()

@@ -73,12 +73,9 @@ impl Angles {
         findings: &Findings,
     ) -> Option<Rotation> {
         let zero = |given: &Attribute<'_, '_>, what: &str| {
-            findings.error(
-                Code::VanishingLength,
-                given.range_value(),
-                format!("{what} has length zero"),
-                "write one with a direction, or leave the attribute out",
-            );
+            let message = format!("{what} has length zero");
+            let help = "write one with a direction, or leave the attribute out";
+            findings.error(Code::VanishingLength, given.range_value(), message, help);
         };
         if let Some(given) = attribute("quat") {
             let quaternion = exactly(findings, &given, "a quaternion, w x y z,")?;

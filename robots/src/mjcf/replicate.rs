@@ -8,7 +8,7 @@ use appell_spec::{Code, Diagnostic, Report};
 use crate::includes::{Edit, MAX_FILE, Whole};
 use crate::letters::plain;
 use crate::rotation::{Pose, Vector, add, scaled};
-use crate::xml::{Element, Findings, Span, elements, exactly, inside, parse, tag};
+use crate::xml::{Element, Findings, Span, elements, exactly, inside, number, parse, tag};
 
 use super::compiler::Compiler;
 
@@ -59,12 +59,8 @@ fn next(text: &str, count: usize) -> Result<Option<Vec<Edit>>, Vec<Diagnostic>> 
     if let Some(joint) = joints {
         let help = "write `<body>` around it";
         let name = joint.tag_name().name();
-        findings.error(
-            Code::NotAllowedHere,
-            tag(joint),
-            format!("`replicate` holds a `{name}`"),
-            help,
-        );
+        let message = format!("`replicate` holds a `{name}`");
+        findings.error(Code::NotAllowedHere, tag(joint), message, help);
     }
     let size = copies.len().saturating_mul(element.range().len()) + text.len();
     if count >= MOST || size as u64 > MAX_FILE {
@@ -72,12 +68,8 @@ fn next(text: &str, count: usize) -> Result<Option<Vec<Edit>>, Vec<Diagnostic>> 
             "copies make the file larger than {} MiB, or there are more than {MOST} `replicate`",
             MAX_FILE >> 20
         );
-        findings.error(
-            Code::LimitExceeded,
-            tag(element),
-            message,
-            "write fewer copies",
-        );
+        let help = "write fewer copies";
+        findings.error(Code::LimitExceeded, tag(element), message, help);
     }
     if findings.has_errors() {
         return Err(findings.into_inner());
@@ -93,17 +85,11 @@ fn copies(root: Element<'_>, element: Element<'_>, findings: &Findings) -> Vec<(
     };
     let offset = read("offset", "an offset, x y z,").unwrap_or_default();
     let turns = read("euler", "a set of Euler angles").unwrap_or_default();
-    let given = element.attribute_node("count");
-    let count = given.and_then(|given| exactly::<1>(findings, &given, "`count`"));
-    let count = count.map_or(0.0, |[count]| count);
+    let count = number(findings, element, "count").unwrap_or_default();
     if !(1.0..=MOST_COPIES).contains(&count) || count.fract() != 0.0 {
         let message = format!("`replicate` needs a `count` between 1 and {MOST_COPIES}");
-        findings.error(
-            Code::MissingKey,
-            tag(element),
-            message,
-            "write `count=\"3\"`",
-        );
+        let help = "write `count=\"3\"`";
+        findings.error(Code::MissingKey, tag(element), message, help);
         return Vec::new();
     }
     let separator = element.attribute("sep").unwrap_or_default();

@@ -2,6 +2,7 @@
 //! left out, with a sentence on how the motion differs. Anything else is refused as invalid.
 
 use appell_spec::{Code, did_you_mean};
+use roxmltree::Attribute;
 
 use crate::model::LeftOut;
 use crate::xml::{Element, Findings, elements, tag};
@@ -23,45 +24,22 @@ struct Row {
     effect: Option<&'static str>,
 }
 
-impl Row {
-    /// An element that is read.
-    const fn read(element: &'static str, within: &'static str, read: &'static str) -> Self {
-        Self {
-            element,
-            within,
-            read,
-            idle: "",
-            left_out: &[],
-            open: true,
-            effect: None,
-        }
-    }
+/// An element that is read, with nothing in it.
+const ROW: Row = Row {
+    element: "",
+    within: "",
+    read: "",
+    idle: "",
+    left_out: &[],
+    open: true,
+    effect: None,
+};
 
-    /// Elements without effect on the motion, with all their contents.
-    const fn idle_element(element: &'static str, within: &'static str) -> Self {
-        let row = Self::read(element, within, "");
-        Self { open: false, ..row }
-    }
-
-    /// Elements that are left out with all their contents.
-    const fn apart(element: &'static str, within: &'static str, effect: &'static str) -> Self {
-        let row = Self::idle_element(element, within);
-        Self {
-            effect: Some(effect),
-            ..row
-        }
-    }
-
-    const fn idle(self, idle: &'static str) -> Self {
-        Self { idle, ..self }
-    }
-
-    const fn left_out(
-        self,
-        left_out: &'static [(&'static str, &'static str, &'static str)],
-    ) -> Self {
-        Self { left_out, ..self }
-    }
+/// Rows; fields that are not given are those of [`ROW`].
+macro_rules! rows {
+    ($({ $($field:ident: $value:expr),* })*) => {
+        &[$(Row { $($field: $value,)* ..ROW }),*]
+    };
 }
 
 const OFF: &str = "disable";
@@ -78,180 +56,119 @@ const TENDON: &str = "it resists nothing and bounds nothing";
 pub(super) const TOUCH: &str = "bodies pass through each other";
 
 /// All elements with their attributes.
-const TABLE: &[Row] = &[
-    Row::read("mujoco", "", "model"),
-    Row::read(
-        "compiler",
-        "mujoco",
-        "angle assetdir autolimits balanceinertia boundinertia boundmass coordinate eulerseq inertiafromgeom \
-         inertiagrouprange meshdir settotalmass strippath",
-    )
-    .idle(
-        "conflict convexhull discardvisual fitaabb fusestatic passthrough savecanonical savecompiled saveinertial \
-         texturedir usethread",
-    )
-    .left_out(&[
-        ("alignfree", "false", ALIGNED),
-        ("exactmeshinertia", "false", "meshes have their inertia by MuJoCo's older way"),
-    ]),
-    Row::idle_element("lengthrange", "compiler"),
-    Row::read("option", "mujoco", "gravity")
-        .idle(
-            "apirate ccd_iterations ccd_tolerance collision cone impratio integrator iterations jacobian ls_iterations \
-             ls_tolerance magnetic mpr_iterations mpr_tolerance noslip_iterations noslip_tolerance o_friction o_margin \
-             o_solimp o_solref sdf_initpoints sdf_iterations sleep_tolerance solver timestep tolerance",
-        )
-        .left_out(&[
-            ("density", "0", FLUID),
-            ("viscosity", "0", FLUID),
-            ("wind", "0", "the medium is at rest"),
-            ("actuatorgroupdisable", "", "their joints have inputs all the same"),
-        ]),
-    Row::read(
-        "flag",
-        "option",
-        "constraint contact damper equality frictionloss gravity limit passive spring",
-    )
-    .idle(
-        "autoreset clampctrl diagexact energy eulerdamp filterparent fwdinv invdiscrete ipc island midphase multiccd \
-         nativeccd override refsafe sensor sensornoise sleep speculative warmstart",
-    )
-    .left_out(&[("actuation", ON, "joints have inputs all the same")]),
-    Row::idle_element("size", "mujoco"),
-    Row::idle_element("statistic", "mujoco"),
-    Row::idle_element("visual", "mujoco"),
-    Row::idle_element("sensor", "mujoco"),
-    Row::idle_element("keyframe", "mujoco"),
-    Row::idle_element("custom", "mujoco"),
-    Row::idle_element("extension", "mujoco"),
-    Row::read("default", "mujoco default", "class"),
-    Row::read("asset", "mujoco", ""),
-    Row::read("mesh", "asset default", "class file inertia name refpos refquat scale").idle(
-        "builtin content_type face material maxhullvert normal params smoothnormal texcoord vertex",
-    ),
-    Row::idle_element("plugin", "mesh geom actuator sensor"),
-    Row::read("hfield", "asset", "file name size").idle("content_type elevation ncol nrow"),
-    Row::idle_element("skin", "asset deformable"),
-    Row::idle_element("texture", "asset default"),
-    Row::idle_element("material", "asset default"),
-    Row::read("model", "asset", "content_type file name"),
-    Row::read("worldbody", "mujoco", ""),
-    Row::read(
-        "body",
-        "body",
-        "axisangle childclass euler gravcomp name pos quat xyaxes zaxis",
-    )
-    .idle("fuse simple sleep user")
-    .left_out(&[("mocap", "false", "it stands still")]),
-    Row::read("frame", "body", "axisangle childclass euler name pos quat xyaxes zaxis"),
-    Row::read("replicate", "mujoco body", "childclass count euler offset sep"),
-    Row::read("attach", "body", "body frame model prefix"),
-    Row::read(
-        "inertial",
-        "body",
-        "axisangle diaginertia euler fullinertia mass pos quat xyaxes zaxis",
-    ),
-    Row::read(
-        "joint",
-        "body default",
-        "armature axis class damping frictionloss limited name pos range ref springdamper springref stiffness type",
-    )
-    .idle("actuatorgravcomp group solimpfriction solimplimit solreffriction solreflimit user")
-    .left_out(&[
-        ("actuatorfrcrange", "0", DRIVE_BOUND),
-        ("actuatorfrclimited", "false|auto", DRIVE_BOUND),
-        ("margin", "0", "the limit begins at the range itself"),
-        ("springyield", "0", YIELD),
-    ]),
-    Row::read("freejoint", "body", "name")
-        .idle("group")
-        .left_out(&[("align", "false|auto", ALIGNED)]),
-    Row::read(
-        "geom",
-        "body default",
-        "axisangle class conaffinity contype density euler fromto group hfield mass mesh name pos quat shellinertia size type \
-         xyaxes zaxis",
-    )
-    .idle(
-        "adhesion castshadow condim fitscale fluidcoef fluidshape friction gap margin material priority rgba \
-         solimp solmix solref surfacevel user",
-    ),
-    Row::read(
-        "site",
-        "body default",
-        "axisangle class euler fromto name pos quat xyaxes zaxis",
-    )
-    .idle("group material mesh rgba size type user"),
-    Row::idle_element("camera", "body default"),
-    Row::idle_element("light", "body default"),
-    Row::apart("plugin", "body", "its forces do not act"),
-    Row::idle_element("composite", "body"),
-    Row::idle_element("flexcomp", "body"),
-    Row::read("deformable", "mujoco", ""),
-    Row::apart("flex", "deformable", "its elastic forces do not act"),
-    Row::read("contact", "mujoco", ""),
-    Row::apart("pair", "contact", TOUCH),
-    Row::idle_element("pair", "default"),
-    Row::idle_element("exclude", "contact"),
-    Row::read("tendon", "mujoco", ""),
-    TENDONS,
-    Row {
-        element: "fixed",
-        within: "tendon",
-        ..TENDONS
-    },
-    Row {
-        element: "tendon",
-        within: "default",
-        ..TENDONS
-    },
-    Row::read("joint", "fixed", "coef joint"),
-    Row::read("site", "spatial", "site"),
-    Row::read("geom", "spatial", "geom sidesite"),
-    Row::read("pulley", "spatial", "divisor"),
-    Row::read("equality", "mujoco", ""),
-    Row::read("equality", "default", "active").idle("solimp solref"),
-    Row::read(
-        "connect",
-        "equality",
-        "active anchor body1 body2 class name site1 site2",
-    )
-    .idle("solimp solref"),
-    Row::read(
-        "weld",
-        "equality",
-        "active anchor body1 body2 class name relpose site1 site2 torquescale",
-    )
-    .idle("solimp solref"),
-    Row::read("joint", "equality", "active class joint1 joint2 name polycoef").idle("solimp solref"),
-    Row::read("tendon", "equality", "active class name polycoef tendon1 tendon2")
-        .idle("solimp solref"),
-    Row::read("flex", "equality", "active class flex name").idle("solimp solref"),
-    Row::read("flexvert", "equality", "active class flex name").idle("solimp solref"),
-    Row::read("flexstrain", "equality", "active cell class flex name").idle("solimp solref"),
-    Row::read("distance", "equality", "active class name geom1 geom2 distance").idle("solimp solref"),
-    Row::read("actuator", "mujoco", ""),
-    Row::apart(ACTUATORS, "actuator default", ACTUATOR),
-];
-
-/// Tendons of both kinds, and their defaults.
-const TENDONS: Row = Row::read(
-    "spatial",
-    "tendon",
-    "armature class damping frictionloss limited name range springlength stiffness",
-)
-.idle("group margin material rgba solimpfriction solimplimit solreffriction solreflimit user width")
-.left_out(&[
-    ("actuatorfrcrange", "0", DRIVE_BOUND),
-    ("actuatorfrclimited", "false|auto", DRIVE_BOUND),
-    ("springyield", "0", YIELD),
-]);
+const TABLE: &[Row] = rows! {
+    { element: "mujoco", within: "", read: "model" }
+    { element: "compiler", within: "mujoco",
+      read: "angle assetdir autolimits balanceinertia boundinertia boundmass coordinate eulerseq inertiafromgeom \
+             inertiagrouprange meshdir settotalmass strippath",
+      idle: "conflict convexhull discardvisual fitaabb fusestatic passthrough savecanonical savecompiled \
+             saveinertial texturedir usethread",
+      left_out: &[
+          ("alignfree", "false", ALIGNED),
+          ("exactmeshinertia", "false", "meshes have their inertia by MuJoCo's older way"),
+      ] }
+    { element: "lengthrange", within: "compiler", open: false }
+    { element: "option", within: "mujoco", read: "gravity",
+      idle: "apirate ccd_iterations ccd_tolerance collision cone impratio integrator iterations jacobian \
+             ls_iterations ls_tolerance magnetic mpr_iterations mpr_tolerance noslip_iterations noslip_tolerance \
+             o_friction o_margin o_solimp o_solref sdf_initpoints sdf_iterations sleep_tolerance solver timestep \
+             tolerance",
+      left_out: &[
+          ("density", "0", FLUID),
+          ("viscosity", "0", FLUID),
+          ("wind", "0", "the medium is at rest"),
+          ("actuatorgroupdisable", "", "their joints have inputs all the same"),
+      ] }
+    { element: "flag", within: "option",
+      read: "constraint contact damper equality frictionloss gravity limit passive spring",
+      idle: "autoreset clampctrl diagexact energy eulerdamp filterparent fwdinv invdiscrete ipc island midphase \
+             multiccd nativeccd override refsafe sensor sensornoise sleep speculative warmstart",
+      left_out: &[("actuation", ON, "joints have inputs all the same")] }
+    { element: "size statistic visual sensor keyframe custom extension", within: "mujoco", open: false }
+    { element: "default", within: "mujoco default", read: "class" }
+    { element: "asset", within: "mujoco" }
+    { element: "mesh", within: "asset default", read: "class file inertia name refpos refquat scale",
+      idle: "builtin content_type face material maxhullvert normal params smoothnormal texcoord vertex" }
+    { element: "plugin", within: "mesh geom actuator sensor", open: false }
+    { element: "hfield", within: "asset", read: "file name size", idle: "content_type elevation ncol nrow" }
+    { element: "skin", within: "asset deformable", open: false }
+    { element: "texture material", within: "asset default", open: false }
+    { element: "model", within: "asset", read: "content_type file name" }
+    { element: "worldbody", within: "mujoco" }
+    { element: "body", within: "body", read: "axisangle childclass euler gravcomp name pos quat xyaxes zaxis",
+      idle: "fuse simple sleep user", left_out: &[("mocap", "false", "it stands still")] }
+    { element: "frame", within: "body", read: "axisangle childclass euler name pos quat xyaxes zaxis" }
+    { element: "replicate", within: "mujoco body", read: "childclass count euler offset sep" }
+    { element: "attach", within: "body", read: "body frame model prefix" }
+    { element: "inertial", within: "body", read: "axisangle diaginertia euler fullinertia mass pos quat xyaxes zaxis" }
+    { element: "joint", within: "body default",
+      read: "armature axis class damping frictionloss limited name pos range ref springdamper springref stiffness type",
+      idle: "actuatorgravcomp group solimpfriction solimplimit solreffriction solreflimit user",
+      left_out: &[
+          ("actuatorfrcrange", "0", DRIVE_BOUND),
+          ("actuatorfrclimited", "false|auto", DRIVE_BOUND),
+          ("margin", "0", "the limit begins at the range itself"),
+          ("springyield", "0", YIELD),
+      ] }
+    { element: "freejoint", within: "body", read: "name", idle: "group", left_out: &[("align", "false|auto", ALIGNED)] }
+    { element: "geom", within: "body default",
+      read: "axisangle class conaffinity contype density euler fromto group hfield mass mesh name pos quat \
+             shellinertia size type xyaxes zaxis",
+      idle: "adhesion castshadow condim fitscale fluidcoef fluidshape friction gap margin material priority rgba \
+             solimp solmix solref surfacevel user" }
+    { element: "site", within: "body default", read: "axisangle class euler fromto name pos quat xyaxes zaxis",
+      idle: "group material mesh rgba size type user" }
+    { element: "camera light", within: "body default", open: false }
+    { element: "plugin", within: "body", open: false, effect: Some("its forces do not act") }
+    { element: "composite flexcomp", within: "body", open: false }
+    { element: "deformable", within: "mujoco" }
+    { element: "flex", within: "deformable", open: false, effect: Some("its elastic forces do not act") }
+    { element: "contact", within: "mujoco" }
+    { element: "pair", within: "contact", open: false, effect: Some(TOUCH) }
+    { element: "pair", within: "default", open: false }
+    { element: "exclude", within: "contact", open: false }
+    { element: "tendon", within: "mujoco" }
+    { element: "spatial fixed", within: "tendon",
+      read: "armature class damping frictionloss limited name range springlength stiffness",
+      idle: "group margin material rgba solimpfriction solimplimit solreffriction solreflimit user width",
+      left_out: &[
+          ("actuatorfrcrange", "0", DRIVE_BOUND),
+          ("actuatorfrclimited", "false|auto", DRIVE_BOUND),
+          ("springyield", "0", YIELD),
+      ] }
+    { element: "tendon", within: "default",
+      read: "armature class damping frictionloss limited name range springlength stiffness",
+      idle: "group margin material rgba solimpfriction solimplimit solreffriction solreflimit user width",
+      left_out: &[
+          ("actuatorfrcrange", "0", DRIVE_BOUND),
+          ("actuatorfrclimited", "false|auto", DRIVE_BOUND),
+          ("springyield", "0", YIELD),
+      ] }
+    { element: "joint", within: "fixed", read: "coef joint" }
+    { element: "site", within: "spatial", read: "site" }
+    { element: "geom", within: "spatial", read: "geom sidesite" }
+    { element: "pulley", within: "spatial", read: "divisor" }
+    { element: "equality", within: "mujoco" }
+    { element: "equality", within: "default", read: "active", idle: "solimp solref" }
+    { element: "connect", within: "equality", read: "active anchor body1 body2 class name site1 site2",
+      idle: "solimp solref" }
+    { element: "weld", within: "equality",
+      read: "active anchor body1 body2 class name relpose site1 site2 torquescale", idle: "solimp solref" }
+    { element: "joint", within: "equality", read: "active class joint1 joint2 name polycoef", idle: "solimp solref" }
+    { element: "tendon", within: "equality", read: "active class name polycoef tendon1 tendon2", idle: "solimp solref" }
+    { element: "flex flexvert", within: "equality", read: "active class flex name", idle: "solimp solref" }
+    { element: "flexstrain", within: "equality", read: "active cell class flex name", idle: "solimp solref" }
+    { element: "distance", within: "equality", read: "active class name geom1 geom2 distance", idle: "solimp solref" }
+    { element: "actuator", within: "mujoco" }
+    { element: ACTUATORS, within: "actuator default", open: false, effect: Some(ACTUATOR) }
+};
 
 /// The kinds of actuators.
 pub(super) const ACTUATORS: &str = "general motor position velocity intvelocity orientation pid damper cylinder muscle \
                                     adhesion dcmotor";
 
-fn has(words: &str, word: &str) -> bool {
+/// Whether a word is one of several, separated by blanks.
+pub(super) fn has(words: &str, word: &str) -> bool {
     words.split_ascii_whitespace().any(|own| own == word)
 }
 
@@ -293,14 +210,11 @@ pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<L
             };
             let known = all().flat_map(|row| row.element.split_ascii_whitespace());
             let within = holder.map_or("", |holder| holder.tag_name().name());
-            findings.error(
-                Code::UnknownKey,
-                tag(element),
-                format!("`{within}` holds no element `{}`", appell_spec::shown(name)),
-                did_you_mean(name, known, || {
-                    "MuJoCo 4.0 allows none there: move it, or remove it".to_owned()
-                }),
-            );
+            let message = format!("`{within}` holds no element `{}`", appell_spec::shown(name));
+            let help = did_you_mean(name, known, || {
+                "MuJoCo 4.0 allows none there: move it, or remove it".to_owned()
+            });
+            findings.error(Code::UnknownKey, tag(element), message, help);
             continue;
         };
         if !row.open {
@@ -322,19 +236,26 @@ pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<L
                     .into_iter()
                     .flat_map(str::split_ascii_whitespace);
                 let all = all.chain(row.left_out.iter().map(|(own, ..)| *own));
-                findings.error(
-                    Code::UnknownKey,
-                    attribute.range(),
-                    format!("`{name}` has no attribute `{}`", appell_spec::shown(key)),
-                    did_you_mean(key, all, || {
-                        "MuJoCo 4.0 does not know it: remove it, or correct its name".to_owned()
-                    }),
-                );
+                unknown_attribute(name, &attribute, all, findings);
             }
         }
         let inner: Vec<Element<'_>> = elements(element).collect();
         open.extend(inner.into_iter().rev());
     }
+}
+
+/// Refuses an attribute that elements of a name do not have.
+pub(super) fn unknown_attribute<'a>(
+    element: &str,
+    attribute: &Attribute<'_, '_>,
+    known: impl IntoIterator<Item = &'a str>,
+    findings: &Findings,
+) {
+    let key = attribute.name();
+    let message = format!("`{element}` has no attribute `{}`", appell_spec::shown(key));
+    let otherwise = "MuJoCo 4.0 does not know it: remove it, or correct its name";
+    let help = did_you_mean(key, known, || otherwise.to_owned());
+    findings.error(Code::UnknownKey, attribute.range(), message, help);
 }
 
 /// Whether a value of an attribute is neutral: one of several words, or zeros.

@@ -1,10 +1,10 @@
 //! Tendons that are sums of coordinates.
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 use roxmltree::Attribute;
 
-use crate::model::{Joint, LeftOut, Polynomial, Sum, Tendon};
-use crate::xml::{Element, children, elements, exactly, numbers, tag};
+use crate::model::{Joint, LeftOut, Sum, Tendon};
+use crate::xml::{Element, children, elements, no_such, number, tag};
 
 use super::schema::effect;
 use super::{Equality, Reader};
@@ -30,15 +30,10 @@ impl<'x> Reader<'x, '_> {
     fn spatial_tendon(&mut self, element: Element<'x>) {
         let class = self.class(element, "class");
         let does = ["stiffness", "damping", "frictionloss", "armature", "range"];
+        let given = self.given(element, "tendon", class);
         let acts = |key: &str| {
-            let own = element.attribute_node(key);
-            let given = own.or_else(|| self.defaults.attribute("tendon", class, key));
-            given.is_some_and(|given| {
-                given
-                    .value()
-                    .split_ascii_whitespace()
-                    .any(|word| word != "0")
-            })
+            let words = given.word(key).unwrap_or_default();
+            words.split_ascii_whitespace().any(|word| word != "0")
         };
         let effect = does.into_iter().any(acts).then(|| effect(element));
         self.left_out.push(LeftOut {
@@ -51,20 +46,12 @@ impl<'x> Reader<'x, '_> {
 
     fn fixed_tendon(&mut self, element: Element<'x>, count: usize) -> Option<Tendon> {
         let class = self.class(element, "class");
-        let attribute = |key: &str| {
-            let own = element.attribute_node(key);
-            own.or_else(|| self.defaults.attribute("tendon", class, key))
-        };
-        let number = |key: &str| {
-            let given = attribute(key)?;
-            exactly::<1>(self.findings, &given, &format!("`{key}`")).map(|[number]| number)
-        };
-        let polynomial = |key: &str| self.polynomial(attribute(key));
+        let given = self.given(element, "tendon", class);
         let name = element.attribute("name");
         let name = name.map_or_else(|| format!("tendon_{}", count + 1), str::to_owned);
         let length = self.sum(element)?;
-        let springlength = match attribute("springlength") {
-            Some(given) => numbers(self.findings, &given)?,
+        let springlength = match given.attribute("springlength") {
+            Some(_) => given.numbers("springlength")?,
             None => vec![BY_JOINTS],
         };
         let relaxed = match springlength.as_slice() {
@@ -75,13 +62,12 @@ impl<'x> Reader<'x, '_> {
             [one] => [*one; 2],
             [] => [0.0; 2],
         };
-        let limited = attribute("limited").is_none_or(|given| given.value() != "false");
+        let limited = given.word("limited") != Some("false");
         let zero = |word: &str| word == "0";
-        let bounds = |given: &Attribute<'_, '_>| !given.value().split_ascii_whitespace().all(zero);
-        let given = attribute("range").filter(bounds);
-        let range =
-            given.and_then(|given| exactly::<2>(self.findings, &given, "a range, from to,"));
-        let bounded = given.filter(|_| limited).map(|range| LeftOut {
+        let bounds = |range: &Attribute<'_, '_>| !range.value().split_ascii_whitespace().all(zero);
+        let ranged = given.attribute("range").filter(bounds);
+        let range = ranged.and_then(|_| given.exactly("range", "a range, from to,"));
+        let bounded = ranged.filter(|_| limited).map(|range| LeftOut {
             what: "tendon/range".to_owned(),
             name: Some(name.clone()),
             effect: Some("its length is not bounded"),
@@ -90,13 +76,13 @@ impl<'x> Reader<'x, '_> {
         let tendon = Tendon {
             name,
             length,
-            damping: polynomial("damping"),
-            stiffness: polynomial("stiffness"),
+            damping: given.polynomial("damping"),
+            stiffness: given.polynomial("stiffness"),
             relaxed,
-            friction: number("frictionloss").unwrap_or_default(),
-            armature: number("armature").unwrap_or_default(),
+            friction: given.number("frictionloss").unwrap_or_default(),
+            armature: given.number("armature").unwrap_or_default(),
             range,
-            drive_range: self.bounds(&attribute, "actuatorfrcrange", "actuatorfrclimited"),
+            drive_range: self.bounds(&given, "actuatorfrcrange", "actuatorfrclimited"),
             place: tag(element),
         };
         self.left_out.extend(bounded);
@@ -108,20 +94,20 @@ impl<'x> Reader<'x, '_> {
         let mut sum = Sum::default();
         for term in children(tendon, "joint") {
             let joint = self.joint_named(term, "joint")?;
-            let factor = match term.attribute_node("coef") {
-                Some(given) => exactly::<1>(self.findings, &given, "`coef`")?[0],
-                None => 1.0,
+            let factor = if term.has_attribute("coef") {
+                number(self.findings, term, "coef")?
+            } else {
+                1.0
             };
             sum.terms.push((joint.name.clone(), factor));
         }
         if sum.terms.is_empty() {
-            let help = "write `<joint joint=\"…\" coef=\"1\"/>`";
-            self.findings.error(
-                Code::MissingKey,
-                tag(tendon),
+            let (message, help) = (
                 "the tendon has no joint",
-                help,
+                "write `<joint joint=\"…\" coef=\"1\"/>`",
             );
+            self.findings
+                .error(Code::MissingKey, tag(tendon), message, help);
             return None;
         }
         Some(sum)
@@ -139,26 +125,11 @@ impl<'x> Reader<'x, '_> {
         let found = self.joint(given.value());
         if found.is_none() {
             let known = self.joint_links.keys().map(String::as_str);
-            self.findings.error(
-                Code::UnknownReference,
-                given.range_value(),
-                format!("there is no joint `{}`", appell_spec::shown(given.value())),
-                did_you_mean(given.value(), known, || {
-                    "name a hinge or a slide of the file".to_owned()
-                }),
-            );
+            let (name, at) = (given.value(), given.range_value());
+            let help = "name a hinge or a slide of the file";
+            self.findings.add(no_such("joint", name, at, known, help));
         }
         found
-    }
-
-    /// Up to three factors.
-    pub(super) fn polynomial(&self, given: Option<Attribute<'x, 'x>>) -> Polynomial {
-        let read = given.and_then(|given| numbers(self.findings, &given));
-        let mut polynomial = [0.0; 3];
-        for (factor, read) in polynomial.iter_mut().zip(read.into_iter().flatten()) {
-            *factor = read;
-        }
-        polynomial
     }
 
     /// `equality/tendon`: the length of a tendon is a polynomial of another one, or constant.
@@ -173,16 +144,11 @@ impl<'x> Reader<'x, '_> {
             let found = tendons.iter().find(|tendon| tendon.name == given.value());
             if found.is_none() {
                 let known = tendons.iter().map(|tendon| tendon.name.as_str());
-                self.findings.error(
-                    Code::UnknownReference,
-                    given.range_value(),
-                    format!("there is no fixed tendon `{}`", appell_spec::shown(given.value())),
-                    did_you_mean(given.value(), known, || {
-                        "name a `tendon/fixed`; remove what couples spatial tendons, and add position constraints to \
-                         the spec"
-                            .to_owned()
-                    }),
-                );
+                let (name, at) = (given.value(), given.range_value());
+                let help = "name a `tendon/fixed`; remove what couples spatial tendons, and add position constraints to \
+                            the spec";
+                self.findings
+                    .add(no_such("fixed tendon", name, at, known, help));
             }
             found
         };

@@ -6,12 +6,13 @@ use crate::letters::{Kind, Number, quantity};
 use crate::model::Motion;
 use crate::patterns;
 use crate::rotation::{Vector, dot, is_zero, right_angles};
-use crate::table::{Item, list};
+use crate::table::{Item, list, quoted};
 use crate::tree::Part;
 
 use super::{Writer, minus, operand, plus};
 
-const AXES: [&str; 3] = ["x", "y", "z"];
+/// Names of the axes of a frame.
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A frame that is turned from its parent, by axes and angles.
 fn turned(parent: &str, turns: &[(String, String)]) -> Item {
@@ -28,6 +29,23 @@ fn turned(parent: &str, turns: &[(String, String)]) -> Item {
             item.raw("turns", &format!("[{}]", tables.join(", ")))
         }
     }
+}
+
+/// The components of a force against the weight of a mass.
+fn against(gravity: Vector, letters: &[String; 3], mass: &str) -> Vec<String> {
+    let components = gravity.into_iter().zip(letters);
+    let force = components.map(|(component, letter)| match mass.strip_prefix('-') {
+        _ if component == 0.0 => "0".to_owned(),
+        Some(mass) if component > 0.0 => format!("{mass}*{letter}"),
+        None if component > 0.0 => format!("-{mass}*{letter}"),
+        _ => format!("{mass}*{letter}"),
+    });
+    force.collect()
+}
+
+/// The components of a position, in m.
+pub(super) fn lengths(position: Vector) -> Vec<String> {
+    position.iter().map(|one| quantity(*one, "m")).collect()
 }
 
 impl Writer<'_> {
@@ -147,15 +165,9 @@ impl Writer<'_> {
             turns.push((format!("{sign}{}", AXES[body.axis.index]), by));
         }
         let item = turned(&parent, &turns);
-        let item = if body.keeps_axes {
-            item
-        } else {
-            let along = format!(
-                "{} points along the axis of the joint, other than in the file",
-                AXES[body.axis.index]
-            );
-            item.text("about", &along)
-        };
+        let axis = AXES[body.axis.index];
+        let along = format!("{axis} points along the axis of the joint, other than in the file");
+        let item = item.text_if(!body.keeps_axes, "about", &along);
         self.frames.add(&called, &item);
         self.called.frames.push(called);
     }
@@ -171,7 +183,7 @@ impl Writer<'_> {
             parent = mount;
         }
         let quaternion = self.called.several[index].iter().rev().take(4).rev();
-        let quaternion: Vec<String> = quaternion.map(|name| crate::table::quoted(name)).collect();
+        let quaternion: Vec<String> = quaternion.map(|name| quoted(name)).collect();
         let item = Item::default()
             .text("parent", &parent)
             .raw("quaternion", &format!("[{}]", quaternion.join(", ")));
@@ -216,10 +228,7 @@ impl Writer<'_> {
         let link = self.links[body.link].name.clone();
         let called = self.called.links[body.link].clone();
         if body.joint.motion == Motion::Free {
-            let item = Item::default()
-                .text("from", "O")
-                .text("in", "ground")
-                .expressions("at", &self.called.several[index][..3]);
+            let item = Item::point("O", "ground", &self.called.several[index][..3]);
             self.points.add(&called, &item);
             self.called.points.push(called);
             return;
@@ -231,24 +240,14 @@ impl Writer<'_> {
             self.places.new_one(&format!("axis_{called}"))
         };
         let (parent_frame, mut from) = (self.frame_of(body.parent), self.point_of(body.parent));
-        let about = format!("place of {name}");
-        let mut at = self.components(
-            body.position,
-            &format!("#_{called}"),
-            &link,
-            &about,
-            Kind::Other,
-        );
+        let (letters, about) = (format!("#_{called}"), format!("place of {name}"));
+        let mut at = self.components(body.position, &letters, &link, &about, Kind::Other);
         let mut frame = parent_frame;
         if body.joint.motion == Motion::Sliding {
             let own = self.called.frames[index].clone();
             if own != frame && !is_zero(body.position) {
                 let guide = self.places.new_one(&format!("guide_{called}"));
-                let item = Item::default()
-                    .text("from", &from)
-                    .text("in", &frame)
-                    .expressions("at", &at);
-                self.points.add(&guide, &item);
+                self.points.add(&guide, &Item::point(&from, &frame, &at));
                 from = guide;
                 at = vec!["0".to_owned(); 3];
             }
@@ -262,15 +261,8 @@ impl Writer<'_> {
                 (constant, true) => format!("{constant} - ({way})"),
             };
         }
-        let item = Item::default()
-            .text("from", &from)
-            .text("in", &frame)
-            .expressions("at", &at);
-        let item = if origin {
-            item
-        } else {
-            item.text("about", "on the axis of the joint")
-        };
+        let item = Item::point(&from, &frame, &at);
+        let item = item.text_if(!origin, "about", "on the axis of the joint");
         self.points.add(&name, &item);
         self.called.points.push(name);
     }
@@ -285,28 +277,19 @@ impl Writer<'_> {
         let link = self.links[body.link].name.clone();
         let called = self.called.links[body.link].clone();
         let frame = self.called.frames[index].clone();
-        let about = format!("centre of mass of {called}");
         let at = if self.centre_is_selected(index) {
             self.centre_in_link(index)
         } else {
-            self.components(
-                inertia.centre,
-                &format!("c#_{called}"),
-                &link,
-                &about,
-                Kind::Inertial,
-            )
+            let letters = format!("c#_{called}");
+            let about = format!("centre of mass of {called}");
+            self.components(inertia.centre, &letters, &link, &about, Kind::Inertial)
         };
         let centre = if at.iter().all(|one| one == "0") {
             self.called.points[index].clone()
         } else {
             let centre = self.places.new_one(&format!("G_{called}"));
             let from = self.called.points[index].clone();
-            let item = Item::default()
-                .text("from", &from)
-                .text("in", &frame)
-                .expressions("at", &at);
-            self.points.add(&centre, &item);
+            self.points.add(&centre, &Item::point(&from, &frame, &at));
             centre
         };
         let mut inertial = |value: f64, unit: &'static str, letter: String, about: &str| {
@@ -360,14 +343,8 @@ impl Writer<'_> {
         let merged: Vec<&str> = merged
             .map(|part| self.called.links[part.link].as_str())
             .collect();
-        let item = if merged.is_empty() {
-            item
-        } else {
-            item.text(
-                "about",
-                &super::sentence(&format!("with {}", merged.join(", "))),
-            )
-        };
+        let about = super::sentence(&format!("with {}", merged.join(", ")));
+        let item = item.text_if(!merged.is_empty(), "about", &about);
         self.bodies.add(&called, &item);
     }
 
@@ -375,15 +352,8 @@ impl Writer<'_> {
     pub(super) fn links_on_the_ground(&mut self) {
         for part in &self.tree.ground {
             if !is_zero(part.position) {
-                let item = Item::default().text("from", "O").text("in", "ground");
-                let at: Vec<String> = part
-                    .position
-                    .iter()
-                    .map(|one| quantity(*one, "m"))
-                    .collect();
-                let item = item
-                    .expressions("at", &at)
-                    .text("about", "fixed to the ground");
+                let item = Item::point("O", "ground", &lengths(part.position));
+                let item = item.text("about", "fixed to the ground");
                 self.points.add(&self.called.links[part.link], &item);
             }
         }
@@ -399,15 +369,8 @@ impl Writer<'_> {
                 if !written || !(all || ends.contains(&part.link)) {
                     continue;
                 }
-                let at: Vec<String> = part
-                    .position
-                    .iter()
-                    .map(|one| quantity(*one, "m"))
-                    .collect();
-                let item = Item::default()
-                    .text("from", &self.called.points[index])
-                    .text("in", &self.called.frames[index])
-                    .expressions("at", &at);
+                let (from, frame) = (&self.called.points[index], &self.called.frames[index]);
+                let item = Item::point(from, frame, &lengths(part.position));
                 self.points.add(name, &item);
             }
         }
@@ -426,60 +389,28 @@ impl Writer<'_> {
                 }
                 let called = &self.called.links[part.link];
                 let point = self.places.new_one(&format!("carried_{called}"));
-                let at: Vec<String> = part.centre.iter().map(|one| quantity(*one, "m")).collect();
-                let item = Item::default()
-                    .text("from", &self.called.points[index])
-                    .text("in", &self.called.frames[index])
-                    .expressions("at", &at);
+                let (from, frame) = (&self.called.points[index], &self.called.frames[index]);
+                let item = Item::point(from, frame, &lengths(part.centre));
                 self.points.add(&point, &item);
                 let mass = quantity(link.carried * link.inertia.mass, "kg");
-                self.lift(
-                    &point,
-                    &point,
-                    &mass,
-                    gravity,
-                    letters,
-                    "gravity compensation",
-                );
+                let force = against(gravity, letters, &mass);
+                self.lift(&point, &point, &force, "gravity compensation");
             }
         }
         for (rotor, point, mass) in std::mem::take(&mut self.weightless) {
-            let about = "the drive has no weight";
-            self.lift(
-                &format!("weightless_{rotor}"),
-                &point,
-                &mass,
-                gravity,
-                letters,
-                about,
-            );
+            let force = against(gravity, letters, &mass);
+            let name = format!("weightless_{rotor}");
+            self.lift(&name, &point, &force, "the drive has no weight");
         }
     }
 
-    /// A force against the weight of a mass.
-    fn lift(
-        &mut self,
-        name: &str,
-        point: &str,
-        mass: &str,
-        gravity: Vector,
-        letters: &[String; 3],
-        about: &str,
-    ) {
-        let force = gravity.iter().zip(letters);
-        let force = force.map(
-            |(component, letter)| match (*component, mass.strip_prefix('-')) {
-                (0.0, _) => "0".to_owned(),
-                (component, Some(mass)) if component > 0.0 => format!("{mass}*{letter}"),
-                (component, None) if component > 0.0 => format!("-{mass}*{letter}"),
-                _ => format!("{mass}*{letter}"),
-            },
-        );
+    /// A force on a point.
+    fn lift(&mut self, name: &str, point: &str, force: &[String], about: &str) {
         let item = Item::default()
             .text("kind", "force")
             .text("on", point)
             .text("in", "ground")
-            .expressions("vector", &force.collect::<Vec<String>>())
+            .expressions("vector", force)
             .text("about", about);
         self.loads.add(name, &item);
     }

@@ -1,14 +1,12 @@
 //! Coincident points of loop closures.
 
-use crate::letters::quantity;
 use crate::loops::Equations;
 use crate::model::Connection;
 use crate::rotation::{Vector, is_zero};
 use crate::table::Item;
 
 use super::Writer;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
+use super::bodies::{AXES, lengths};
 
 impl Writer<'_> {
     /// Adds the equations of connections of links.
@@ -50,11 +48,9 @@ impl Writer<'_> {
             return self.point_of(body);
         }
         let name = self.places.new_one(&format!("{connection}_{}", end + 1));
-        let at: Vec<String> = at.iter().map(|one| quantity(*one, "m")).collect();
-        let item = Item::default()
-            .text("from", &self.point_of(body))
-            .text("in", &self.frame_of(body));
-        self.points.add(&name, &item.expressions("at", &at));
+        let (from, frame) = (self.point_of(body), self.frame_of(body));
+        let item = Item::point(&from, &frame, &lengths(at));
+        self.points.add(&name, &item);
         name
     }
 }

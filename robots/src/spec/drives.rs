@@ -187,11 +187,7 @@ impl Writer<'_> {
             (None, _) => times(&gear, &force),
         };
         let about = sentence(&format!("force of the actuator {}", drive.name));
-        let item = Item::default()
-            .text("kind", "generalized")
-            .text(along.0, &along.1)
-            .text("force", &force)
-            .text("about", &about);
+        let item = Item::generalized((along.0, &along.1), &force).text("about", &about);
         let load = self.loads.add(&called, &item);
         self.exerts(drive, &robot.tendons, &load, shared.is_some());
         self.record(drive, called, load);
@@ -366,11 +362,8 @@ impl Writer<'_> {
             if let Some(range) = joint.drive_range.filter(|_| !exerted.bounded) {
                 let range = range.map(|end| bound(end, units.force));
                 let beyond = minus(&limited(&total, &range), &format!("({total})"));
-                let item = Item::default()
-                    .text("kind", "generalized")
-                    .text("coordinate", &q)
-                    .text("force", &beyond)
-                    .text("about", "bounds the sum of the forces of actuators");
+                let item = Item::generalized(("coordinate", &q), &beyond);
+                let item = item.text("about", "bounds the sum of the forces of actuators");
                 let load = self.loads.add(&format!("bound_{q}"), &item);
                 total = plus(&total, &format!("force({load})"));
             }

@@ -9,6 +9,8 @@ use super::resistances::{Owner, Property};
 use super::units::Units;
 use super::{Writer, operand, sentence};
 
+const ARMATURE: Property<'_> = Property::new("armature", "armature", "inertia of the drive");
+
 impl Writer<'_> {
     /// The coordinate of a joint with its pseudo-velocity, input and passive forces.
     pub(super) fn joint(&mut self, index: usize) {
@@ -35,38 +37,23 @@ impl Writer<'_> {
         self.spring(&owner, joint.stiffness, joint.relaxed);
         self.friction(&owner, joint.friction, &rate);
         if joint.armature != 0.0 || self.numbers.patterns.names(&joint.name, "armature") {
-            self.armature(joint, &q, &units);
+            let inertia = self.of_owner(&owner, ARMATURE, joint.armature, units.inertia);
+            self.turning_rotor(&q, &q, inertia, &units, &format!("joint {}", joint.name));
         }
     }
 
     /// The input of a joint, along its coordinate.
     fn drive(&mut self, joint: &Joint, q: &str, units: &Units) {
-        let input = self.quantities.new_one(&format!(
-            "{}_{q}",
-            if joint.motion == Motion::Turning {
-                "tau"
-            } else {
-                "force"
-            }
-        ));
-        let what = if joint.motion == Motion::Turning {
-            "torque"
-        } else {
-            "force"
+        let (letter, what) = match joint.motion {
+            Motion::Turning => ("tau", "torque"),
+            _ => ("force", "force"),
         };
+        let input = self.quantities.new_one(&format!("{letter}_{q}"));
+        let about = sentence(&format!("{what} at joint {}", joint.name));
         let item = Item::default().text("unit", units.force);
-        self.inputs.add(
-            &input,
-            &item.text(
-                "about",
-                &sentence(&format!("{what} at joint {}", joint.name)),
-            ),
-        );
-        let item = Item::default()
-            .text("kind", "generalized")
-            .text("coordinate", q);
-        self.loads
-            .add(&format!("drive_{q}"), &item.text("force", &input));
+        self.inputs.add(&input, &item.text("about", &about));
+        let load = Item::generalized(("coordinate", q), &input);
+        self.loads.add(&format!("drive_{q}"), &load);
     }
 
     /// The coordinates of a body with a ball joint or a free joint.
@@ -86,11 +73,7 @@ impl Writer<'_> {
         let values = place[if is_free { 0 } else { 3 }..].iter().chain(&attitude);
         for (name, &(value, unit)) in self.called.several[index].iter().zip(values) {
             let item = Item::default().text("unit", unit).text("about", &named);
-            let item = if value == 0.0 {
-                item
-            } else {
-                item.raw("initial", &plain(value))
-            };
+            let item = item.raw_if(value != 0.0, "initial", &plain(value));
             self.coordinates.add(name, &item);
         }
     }
@@ -133,16 +116,13 @@ impl Writer<'_> {
     fn along(&mut self, index: usize, axis: &str, speed: &str, units: &Units) {
         let joint = &self.tree.bodies[index].joint;
         let q = self.called.coordinates[index].clone();
-        let item = |force: &str| {
-            let item = Item::default().text("kind", "generalized");
-            item.text("velocity", speed).text("force", force)
-        };
         if joint.motion == Motion::Ball && self.driven {
             let input = self.quantities.new_one(&format!("tau_{q}_{axis}"));
             let about = sentence(&format!("torque at joint {}, {axis}", joint.name));
             let declared = Item::default().text("unit", units.force);
             self.inputs.add(&input, &declared.text("about", &about));
-            self.loads.add(&format!("drive_{q}_{axis}"), &item(&input));
+            let load = Item::generalized(("velocity", speed), &input);
+            self.loads.add(&format!("drive_{q}_{axis}"), &load);
         }
         let owner = Owner {
             called: speed,
@@ -161,17 +141,18 @@ impl Writer<'_> {
         let q = self.called.coordinates[index].clone();
         let is_free = joint.motion == Motion::Free;
         let of = format!("joint {}", joint.name);
-        let number = |unit: &'static str, letter: &'static str| Property {
-            value: joint.armature,
-            unit,
-            letter,
-            attribute: letter,
-            about: "inertia of the drive",
+        let owner = Owner {
+            called: &q,
+            of: &joint.name,
+            kind: "joint",
+            along: ("coordinate", &q),
+            units: &Units::of(Motion::Turning),
         };
-        let inertia = self.of_owner(&q, &joint.name, "joint", number("kg*m^2", "armature"));
+        let inertia = self.of_owner(&owner, ARMATURE, joint.armature, "kg*m^2");
         let rotor = self.places.new_one(&format!("rotor_{q}"));
         if is_free {
-            let mass = self.of_owner(&q, &joint.name, "joint", number("kg", "armature_mass"));
+            let mass = Property::new("armature_mass", "armature_mass", "inertia of the drive");
+            let mass = self.of_owner(&owner, mass, joint.armature, "kg");
             let point = self.called.points[index].clone();
             let frame = self.called.frames[index].clone();
             self.weightless
@@ -190,41 +171,19 @@ impl Writer<'_> {
         let body = &self.tree.bodies[index];
         let joint = &body.joint;
         let item = Item::default().text("unit", units.coordinate);
-        let item = if joint.name == q {
-            item
-        } else {
-            item.text("about", &sentence(&format!("joint {}", joint.name)))
-        };
-        let item = match joint.range {
-            Some(range) => item.raw("range", &list(&range.map(plain))),
-            None => item,
-        };
+        let about = sentence(&format!("joint {}", joint.name));
+        let item = item.text_if(joint.name != q, "about", &about);
+        let range = list(&joint.range.unwrap_or_default().map(plain));
+        let item = item.raw_if(joint.range.is_some(), "range", &range);
         let start = match self.start {
             Some(start) => joint.zero + start.ways[body.link],
             None => joint.start(),
         };
-        let item = if start == 0.0 {
-            item
-        } else {
-            item.raw("initial", &plain(start))
-        };
+        let item = item.raw_if(start != 0.0, "initial", &plain(start));
         self.coordinates.add(q, &item);
     }
 
-    /// Armature: inertia of a rotor that moves with its joint only.
-    fn armature(&mut self, joint: &Joint, q: &str, units: &Units) {
-        let number = Property {
-            value: joint.armature,
-            unit: units.inertia,
-            letter: "armature",
-            attribute: "armature",
-            about: "inertia of the drive",
-        };
-        let inertia = self.of_owner(q, &joint.name, "joint", number);
-        self.turning_rotor(q, q, inertia, units, &format!("joint {}", joint.name));
-    }
-
-    /// A body at rest on the ground but for a turn by a sum of coordinates.
+    /// Inertia of a rotor that moves with a joint or tendon only: a body at rest on the ground but for a turn by a sum of coordinates.
     pub(super) fn turning_rotor(
         &mut self,
         called: &str,

@@ -26,40 +26,55 @@ pub(super) struct Owner<'a> {
 /// A physical property of a joint or a tendon.
 #[derive(Clone, Copy)]
 pub(super) struct Property<'a> {
-    /// Its value in the unit.
-    pub(super) value: f64,
-    /// Its SI unit.
-    pub(super) unit: &'static str,
     /// The beginning of its name as a parameter.
-    pub(super) letter: &'a str,
+    letter: &'a str,
     /// The attribute of a joint that it is, as far as patterns select it.
-    pub(super) attribute: &'static str,
+    attribute: &'static str,
     /// Its description, without the joint or tendon.
-    pub(super) about: &'a str,
+    about: &'a str,
 }
+
+impl<'a> Property<'a> {
+    pub(super) const fn new(letter: &'a str, attribute: &'static str, about: &'a str) -> Self {
+        Self {
+            letter,
+            attribute,
+            about,
+        }
+    }
+}
+
+const DAMPING: Property<'_> = Property::new("damping", "damping", "damping");
+const STIFFNESS: Property<'_> = Property::new("stiffness", "stiffness", "stiffness of the spring");
+const RELAXED: &str = "coordinate of the relaxed spring";
+const FRICTION: Property<'_> = Property::new("friction", "frictionloss", "dry friction");
 
 impl Writer<'_> {
     /// A number of a joint or a tendon, as an expression.
     pub(super) fn of_owner(
         &mut self,
-        called: &str,
-        of: &str,
-        kind: &str,
+        owner: &Owner<'_>,
         property: Property<'_>,
+        value: f64,
+        unit: &'static str,
     ) -> String {
+        let Property {
+            letter,
+            attribute,
+            about,
+        } = property;
         let number = Number {
-            value: property.value,
-            unit: property.unit,
-            letter: &format!("{}_{called}", property.letter),
-            of,
-            attribute: if kind == "joint" {
-                property.attribute
-            } else {
-                ""
+            value,
+            unit,
+            letter: &format!("{letter}_{}", owner.called),
+            of: owner.of,
+            attribute: match owner.kind {
+                "joint" => attribute,
+                _ => "",
             },
-            about: &format!("{} of {kind} {of}", property.about),
+            about: &format!("{about} of {} {}", owner.kind, owner.of),
             kind: Kind::Other,
-            never_negative: property.value >= 0.0 && !property.letter.starts_with("relaxed"),
+            never_negative: value >= 0.0 && letter != "relaxed",
         };
         self.numbers.write(number, &mut self.quantities)
     }
@@ -71,11 +86,7 @@ impl Writer<'_> {
 
     /// Adds a load along the coordinate, speed or tendon.
     fn resist(&mut self, owner: &Owner<'_>, word: &str, force: &str) {
-        let (key, along) = owner.along;
-        let item = Item::default()
-            .text("kind", "generalized")
-            .text(key, along)
-            .text("force", force);
+        let item = Item::generalized(owner.along, force);
         self.loads.add(&format!("{word}_{}", owner.called), &item);
     }
 
@@ -83,7 +94,7 @@ impl Writer<'_> {
     fn opposing(
         &mut self,
         owner: &Owner<'_>,
-        word: &str,
+        word: &'static str,
         factors: Polynomial,
         units: [&'static str; 3],
         powers: [String; 3],
@@ -97,18 +108,9 @@ impl Writer<'_> {
                 0 => word.to_owned(),
                 _ => format!("{word}_{}", index + 1),
             };
-            let number = Property {
-                value: factor,
-                unit: units[index],
-                letter: &letter,
-                attribute: match (index, word) {
-                    (0, "damping") => "damping",
-                    (0, "stiffness") => "stiffness",
-                    _ => "",
-                },
-                about: word,
-            };
-            let factor = self.of_owner(owner.called, owner.of, owner.kind, number);
+            let attribute = if index == 0 { word } else { "" };
+            let property = Property::new(&letter, attribute, word);
+            let factor = self.of_owner(owner, property, factor, units[index]);
             let term = format!("{factor}*{power}");
             force = match (force.as_str(), term.strip_prefix('-')) {
                 ("0", Some(term)) => term.to_owned(),
@@ -137,14 +139,7 @@ impl Writer<'_> {
             return;
         };
         if linear != 0.0 || self.chosen(owner, "damping") {
-            let number = Property {
-                value: linear,
-                unit: owner.units.damping[0],
-                letter: "damping",
-                attribute: "damping",
-                about: "damping",
-            };
-            let damping = self.of_owner(owner.called, owner.of, owner.kind, number);
+            let damping = self.of_owner(owner, DAMPING, linear, owner.units.damping[0]);
             let item = Item::default()
                 .text("kind", "damper")
                 .text("coordinate", owner.along.1)
@@ -158,28 +153,11 @@ impl Writer<'_> {
         if is_zero(stiffness) && !self.chosen(owner, "stiffness") {
             return;
         }
-        let relaxed_at = |value: f64, attribute: &'static str| Property {
-            value,
-            unit: owner.units.coordinate,
-            letter: "relaxed",
-            attribute,
-            about: "coordinate of the relaxed spring",
-        };
+        let unit = owner.units.coordinate;
         if let [linear, 0.0, 0.0] = stiffness {
-            let number = Property {
-                value: linear,
-                unit: owner.units.stiffness[0],
-                letter: "stiffness",
-                attribute: "stiffness",
-                about: "stiffness of the spring",
-            };
-            let stiffness = self.of_owner(owner.called, owner.of, owner.kind, number);
-            let relaxed = self.of_owner(
-                owner.called,
-                owner.of,
-                owner.kind,
-                relaxed_at(relaxed, "springref"),
-            );
+            let stiffness = self.of_owner(owner, STIFFNESS, linear, owner.units.stiffness[0]);
+            let at = Property::new("relaxed", "springref", RELAXED);
+            let relaxed = self.of_owner(owner, at, relaxed, unit);
             let item = Item::default()
                 .text("kind", "spring")
                 .text("coordinate", owner.along.1)
@@ -192,7 +170,8 @@ impl Writer<'_> {
             self.loads.add(&format!("spring_{}", owner.called), &item);
             return;
         }
-        let relaxed = self.of_owner(owner.called, owner.of, owner.kind, relaxed_at(-relaxed, ""));
+        let at = Property::new("relaxed", "", RELAXED);
+        let relaxed = self.of_owner(owner, at, -relaxed, unit);
         let x = plus(owner.along.1, &relaxed);
         self.elastic(owner, stiffness, &x);
     }
@@ -210,14 +189,7 @@ impl Writer<'_> {
         if friction == 0.0 && !self.chosen(owner, "frictionloss") {
             return;
         }
-        let number = Property {
-            value: friction,
-            unit: owner.units.force,
-            letter: "friction",
-            attribute: "frictionloss",
-            about: "dry friction",
-        };
-        let friction = self.of_owner(owner.called, owner.of, owner.kind, number);
+        let friction = self.of_owner(owner, FRICTION, friction, owner.units.force);
         let is_angle = owner.units.coordinate == "rad";
         let slow = quantity(SLOW[usize::from(!is_angle)], owner.units.rate);
         let force = format!("-{friction}*smooth_sign({rate}, {slow})");

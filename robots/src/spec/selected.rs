@@ -1,6 +1,6 @@
 //! Centres of mass and inertias whose numbers patterns select: they are those of the file's frames.
 
-use crate::inertia::position_without_rounding;
+use crate::inertia::without_rounding;
 use crate::letters::{Kind, Number, plain, quantity};
 use crate::model::Motion;
 use crate::rotation::add;
@@ -61,7 +61,7 @@ impl Writer<'_> {
             })
             .collect();
         let turned = body.own.inverse();
-        let shift = position_without_rounding(turned.of(anchor));
+        let shift = without_rounding(turned.of(anchor));
         (turned.0.iter().zip(shift))
             .map(|(row, shift)| {
                 let terms = row

@@ -88,14 +88,8 @@ impl Writer<'_> {
                 self.elastic(&owner, tendon.stiffness, &strain);
             }
             if tendon.armature != 0.0 {
-                let number = Property {
-                    value: tendon.armature,
-                    unit: units.inertia,
-                    letter: "armature",
-                    attribute: "",
-                    about: "inertia",
-                };
-                let inertia = self.of_owner(&called, &tendon.name, "tendon", number);
+                let property = Property::new("armature", "", "inertia");
+                let inertia = self.of_owner(&owner, property, tendon.armature, units.inertia);
                 let of = format!("tendon {}", tendon.name);
                 self.turning_rotor(&called, &length, inertia, &units, &of);
             }

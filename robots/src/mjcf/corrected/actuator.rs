@@ -1,9 +1,9 @@
 //! Gains, biases, lags, delays and limits of actuators.
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 
 use crate::model::Drive;
-use crate::xml::{Element, Findings, children, elements, tag};
+use crate::xml::{Element, Findings, children, elements, no_such, tag};
 
 use super::super::law::Law;
 use super::super::schema::ACTUATORS;
@@ -12,17 +12,7 @@ use super::change::{Amount, Refused, refused};
 use super::sheet::{Sheet, read};
 
 /// Attributes of shortcuts that `general` does not have.
-const OF_SHORTCUTS: [&str; 9] = [
-    "kp",
-    "kv",
-    "dampratio",
-    "timeconst",
-    "inheritrange",
-    "area",
-    "diameter",
-    "bias",
-    "input",
-];
+const OF_SHORTCUTS: &str = "kp kv dampratio timeconst inheritrange area diameter bias input";
 /// Numbers of an affine bias: constant, factor of the length, factor of the rate.
 const AFFINE: usize = 3;
 /// How far a delay may be rounded to whole steps, relative to it.
@@ -39,12 +29,8 @@ impl<'x> Sheet<'x, '_> {
         found.ok_or_else(|| {
             let known: Vec<String> = all().map(called).collect();
             let known = known.iter().map(String::as_str);
-            refused(
-                Code::UnknownReference,
-                tag(self.root),
-                format!("there is no actuator `{}`", appell_spec::shown(name)),
-                did_you_mean(name, known, || "name an actuator of the file".to_owned()),
-            )
+            let help = "name an actuator of the file";
+            no_such("actuator", name, tag(self.root), known, help)
         })
     }
 
@@ -88,10 +74,6 @@ impl<'x> Sheet<'x, '_> {
         Err(refused(Code::NotAllowedHere, tag(actuator), message, help))
     }
 
-    #[allow(
-        clippy::unnecessary_box_returns,
-        reason = "all refusals are boxed, as errors of results"
-    )]
     fn no_such_gain(actuator: Element<'x>, name: &str, gain: &str) -> Refused {
         let kind = actuator.tag_name().name();
         let message = format!("`{kind}` `{name}` has no `{gain}`");
@@ -178,7 +160,7 @@ impl<'x> Sheet<'x, '_> {
 
     pub(super) fn gear(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
         let actuator = self.actuator(name)?;
-        let before = self.number_of(actuator, "gear")?.unwrap_or(1.0);
+        let before = self.first(actuator, ACTUATORS, "gear")?.unwrap_or(1.0);
         let after = amount.of(before);
         if same(after, before) {
             return Ok(());
@@ -232,9 +214,9 @@ impl<'x> Sheet<'x, '_> {
         Ok(())
     }
 
-    pub(super) fn lag(&mut self, name: &str, seconds: f64) -> Result<(), Refused> {
+    pub(super) fn lag(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
         let (actuator, mut law) = self.affine(name)?;
-        let seconds = self.at_least_zero(name, "time constant", seconds);
+        let seconds = self.at_least_zero(name, "time constant", amount.of(law.lag()));
         let filter = law.filter_type.as_str();
         if !["none", "filter", "filterexact"].contains(&filter) {
             let message = format!("actuator `{name}` has the dynamics `{filter}`");
@@ -256,11 +238,10 @@ impl<'x> Sheet<'x, '_> {
         Ok(())
     }
 
-    pub(super) fn delay(&mut self, name: &str, seconds: f64) -> Result<(), Refused> {
+    pub(super) fn delay(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
         let actuator = self.actuator(name)?;
-        let seconds = self.at_least_zero(name, "delay", seconds);
-        let before = self.numbers(actuator, ACTUATORS, "delay")?;
-        let before = before.and_then(|all| all.first().copied()).unwrap_or(0.0);
+        let before = self.first(actuator, ACTUATORS, "delay")?.unwrap_or(0.0);
+        let seconds = self.at_least_zero(name, "delay", amount.of(before));
         if same(seconds, before) {
             return Ok(());
         }
@@ -280,8 +261,8 @@ impl<'x> Sheet<'x, '_> {
             (seconds, (seconds / step).ceil())
         };
         self.set(actuator, "delay", number(delay))?;
-        let given = self.numbers(actuator, ACTUATORS, "nsample")?;
-        let enough = given.is_some_and(|all| all.first().is_some_and(|one| *one >= samples));
+        let given = self.first(actuator, ACTUATORS, "nsample")?;
+        let enough = given.is_some_and(|given| given >= samples);
         if !enough {
             self.set(actuator, "nsample", number(samples))?;
         }
@@ -366,21 +347,20 @@ impl<'x> Sheet<'x, '_> {
             let named = ["joint", "jointinparent"].map(|key| actuator.attribute(key));
             named.contains(&Some(joint))
         });
-        own.map(|actuator| Ok((actuator, self.number_of(actuator, "gear")?.unwrap_or(1.0))))
-            .collect()
-    }
-
-    /// The first number of an attribute of an actuator.
-    fn number_of(&self, actuator: Element<'x>, key: &str) -> Result<Option<f64>, Refused> {
-        let all = self.numbers(actuator, ACTUATORS, key)?;
-        Ok(all.and_then(|all| all.first().copied()))
+        own.map(|actuator| {
+            Ok((
+                actuator,
+                self.first(actuator, ACTUATORS, "gear")?.unwrap_or(1.0),
+            ))
+        })
+        .collect()
     }
 
     /// What actuators of a joint add to its armature or damping by attributes of this name.
     pub(super) fn carried(&self, joint: &str, key: &str) -> Result<f64, Refused> {
         let mut sum = 0.0;
         for (actuator, gear) in self.drives_of(joint)? {
-            sum += gear * gear * self.number_of(actuator, key)?.unwrap_or_default();
+            sum += gear * gear * self.first(actuator, ACTUATORS, key)?.unwrap_or_default();
         }
         Ok(sum)
     }
@@ -463,46 +443,39 @@ impl<'x> Sheet<'x, '_> {
         let converted = !actuator.has_tag_name("general");
         if converted {
             self.write_inherited_range(actuator)?;
-            for key in OF_SHORTCUTS {
+            for key in OF_SHORTCUTS.split_ascii_whitespace() {
                 self.remove(actuator, key)?;
             }
             self.rename(actuator, "general")?;
         }
-        let kinds = |law: &'_ Law| {
-            let all = [&law.filter_type, &law.gain_type, &law.bias_type];
-            all.map(Clone::clone)
-        };
-        let keys = ["dyntype", "gaintype", "biastype"].into_iter();
-        let neutral = ["none", "fixed", "none"].into_iter();
-        let words = kinds(law).into_iter().zip(kinds(class)).zip(kinds(before));
-        for ((key, neutral), ((word, of_class), was)) in keys.zip(neutral).zip(words) {
+        let types = [
+            ("dyntype", "none"),
+            ("gaintype", "fixed"),
+            ("biastype", "none"),
+        ];
+        for (key, neutral) in types {
+            let [word, of_class, was] = [law, class, before].map(|law| match key {
+                "dyntype" => &law.filter_type,
+                "gaintype" => &law.gain_type,
+                _ => &law.bias_type,
+            });
             let changes = converted || word != was;
             if changes && (word != neutral || of_class != neutral) {
-                self.set(actuator, key, word)?;
+                self.set(actuator, key, word.as_str())?;
             }
         }
         let [filtered, affine] = [&law.filter_type, &law.bias_type].map(|word| word != "none");
         let lists = [
-            (
-                "dynprm",
-                1,
-                filtered,
-                [law, class, before].map(|law| vec![law.time]),
-            ),
-            (
-                "gainprm",
-                1,
-                true,
-                [law, class, before].map(|law| law.gain.to_vec()),
-            ),
-            (
-                "biasprm",
-                AFFINE,
-                affine,
-                [law, class, before].map(|law| law.bias.to_vec()),
-            ),
+            ("dynprm", 1, filtered),
+            ("gainprm", 1, true),
+            ("biasprm", AFFINE, affine),
         ];
-        for (key, least, acts, [list, of_class, was]) in lists {
+        for (key, least, acts) in lists {
+            let [list, of_class, was] = [law, class, before].map(|law| match key {
+                "dynprm" => vec![law.time],
+                "gainprm" => law.gain.to_vec(),
+                _ => law.bias.to_vec(),
+            });
             if !acts || !converted && numbers(&list) == numbers(&was) {
                 continue;
             }
@@ -557,7 +530,6 @@ fn called(actuator: Element<'_>) -> String {
     let drives = ["joint", "jointinparent", "tendon"];
     let drives = drives.iter().find_map(|key| actuator.attribute(*key));
     let unnamed = || format!("{kind}_{}", drives.unwrap_or_default());
-    actuator
-        .attribute("name")
-        .map_or_else(unnamed, str::to_owned)
+    let name = actuator.attribute("name");
+    name.map_or_else(unnamed, str::to_owned)
 }

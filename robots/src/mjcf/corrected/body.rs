@@ -1,13 +1,13 @@
 //! Masses, centres of mass, inertias and payloads of bodies.
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 
 use crate::format::Format;
 use crate::inertia::{Inertia, within_triangle};
 use crate::model::Robot;
 use crate::options::Options;
 use crate::rotation::{Pose, Vector};
-use crate::xml::{Element, Findings, children, tag};
+use crate::xml::{Element, Findings, children, no_such, tag};
 
 use super::super::compiler::InertiaFrom;
 use super::bytes::{number, numbers, same};
@@ -43,12 +43,8 @@ impl<'x> Sheet<'x, '_> {
         let found = links().find(|(_, link)| link.name == name);
         found.map(|(index, _)| index).ok_or_else(|| {
             let known = links().map(|(_, link)| link.name.as_str());
-            refused(
-                Code::UnknownReference,
-                tag(self.root),
-                format!("there is no body `{}`", appell_spec::shown(name)),
-                did_you_mean(name, known, || "name a body of the file".to_owned()),
-            )
+            let help = "name a body of the file";
+            no_such("body", name, tag(self.root), known, help)
         })
     }
 
@@ -67,12 +63,8 @@ impl<'x> Sheet<'x, '_> {
         let link = &self.robot.links[link];
         self.at(&link.place).ok_or_else(|| {
             let message = format!("body `{}` has no element", link.name);
-            refused(
-                Code::UnknownReference,
-                tag(self.root),
-                message,
-                "name a body of the file",
-            )
+            let help = "name a body of the file";
+            refused(Code::UnknownReference, tag(self.root), message, help)
         })
     }
 
@@ -82,12 +74,8 @@ impl<'x> Sheet<'x, '_> {
         let Some((head, pose)) = self.head(link) else {
             let message = format!("body `{name}` does not move");
             let help = "its mass changes nothing: name a body with a joint";
-            return Err(refused(
-                Code::NotAllowedHere,
-                tag(self.body(link)?),
-                message,
-                help,
-            ));
+            let place = tag(self.body(link)?);
+            return Err(refused(Code::NotAllowedHere, place, message, help));
         };
         let known = self.groups.iter().position(|group| group.head == head);
         let index = known.unwrap_or_else(|| {
@@ -207,7 +195,7 @@ impl<'x> Sheet<'x, '_> {
                 text.replace_range(place.clone(), &" ".repeat(place.len()));
             }
         }
-        let document = crate::xml::parse(&text).map_err(Box::new)?;
+        let document = crate::xml::parse(&text)?;
         let options = Options {
             floating: true,
             ..Options::default()
@@ -256,10 +244,6 @@ impl<'x> Sheet<'x, '_> {
             }
             self.reshaped = true;
             self.tell_whole(&group);
-            if self.format == Format::Urdf {
-                self.write_links(&group)?;
-                continue;
-            }
             self.use_inertials()?;
             self.write_group(&group)?;
             self.add_to_total(group.after.mass - group.before.mass)?;
@@ -284,17 +268,27 @@ impl<'x> Sheet<'x, '_> {
     }
 
     fn write_group(&mut self, group: &Group) -> Result<(), Refused> {
-        let body = self.body(group.head)?;
-        let inertial = children(body, "inertial").last();
+        let is_urdf = self.format == Format::Urdf;
+        let mut all = children(self.body(group.head)?, "inertial");
+        // Of several in an MJCF, the last one holds.
+        let inertial = if is_urdf { all.next() } else { all.last() };
         let from_geoms = self.compiler.inertia_from == InertiaFrom::Geoms;
         let by_numbers = !from_geoms && !group.reshaped && !self.compiler.adjusts();
         if let Some(inertial) = inertial.filter(|_| by_numbers)
-            && self.is_alone(group)
+            && self.others(group).is_empty()
         {
-            return self.write_numbers(inertial, group);
+            return if is_urdf {
+                self.write_link_numbers(inertial, group)
+            } else {
+                self.write_numbers(inertial, group)
+            };
         }
         for (link, own) in self.shares(group)? {
-            self.write_whole(link, own)?;
+            if is_urdf {
+                self.write_link(link, own)?;
+            } else {
+                self.write_whole(link, own)?;
+            }
         }
         Ok(())
     }
@@ -308,13 +302,8 @@ impl<'x> Sheet<'x, '_> {
         members
     }
 
-    /// Whether only the head of a group has mass.
-    pub(super) fn is_alone(&self, group: &Group) -> bool {
-        self.others(group).is_empty()
-    }
-
     /// The links of a group whose inertia changes, each with the new one in its frame.
-    pub(super) fn shares(&self, group: &Group) -> Result<Vec<(usize, Inertia)>, Refused> {
+    fn shares(&self, group: &Group) -> Result<Vec<(usize, Inertia)>, Refused> {
         let others = self.others(group);
         let own = others.iter().fold(group.after, |own, (link, pose)| {
             own.with(&negative(self.robot.links[*link].inertia.placed(*pose)))

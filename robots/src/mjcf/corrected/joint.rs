@@ -1,34 +1,16 @@
 //! Numbers of joints, springs, and what encoders read.
 
-use appell_spec::{Code, did_you_mean};
+use appell_spec::Code;
 
 use crate::model::{Joint, Motion};
-use crate::xml::{Element, tag};
+use crate::xml::{Element, children, no_such, tag};
 
 use super::bytes::{number, numbers, same};
-use super::change::{Amount, JointNumber, Refused, refused};
+use super::change::{Amount, Number, Refused, refused};
 use super::sheet::Sheet;
 
 /// The name of joints in classes.
 const JOINT: &str = "joint";
-
-impl JointNumber {
-    fn key(self) -> &'static str {
-        match self {
-            Self::Damping => "damping",
-            Self::Frictionloss => "frictionloss",
-            Self::Armature => "armature",
-            Self::Stiffness => "stiffness",
-            Self::Springref => "springref",
-            Self::Ref => "ref",
-        }
-    }
-
-    /// Whether it is a position of the joint.
-    fn is_position(self) -> bool {
-        matches!(self, Self::Springref | Self::Ref)
-    }
-}
 
 impl<'x> Sheet<'x, '_> {
     /// A joint and its element.
@@ -43,12 +25,8 @@ impl<'x> Sheet<'x, '_> {
         let found = found.and_then(|joint| Some((joint.clone(), self.at(&joint.place)?)));
         let (joint, element) = found.ok_or_else(|| {
             let known = joints().map(|joint| joint.name.as_str());
-            refused(
-                Code::UnknownReference,
-                tag(self.root),
-                format!("there is no joint `{}`", appell_spec::shown(name)),
-                did_you_mean(name, known, || "name a joint of the file".to_owned()),
-            )
+            let help = "name a joint of the file";
+            no_such("joint", name, tag(self.root), known, help)
         })?;
         if element.has_tag_name("freejoint") {
             let message = format!("joint `{name}` is a `freejoint`, which has no numbers");
@@ -89,11 +67,18 @@ impl<'x> Sheet<'x, '_> {
     pub(super) fn joint_number(
         &mut self,
         name: &str,
-        attribute: JointNumber,
+        attribute: Number,
         amount: Amount,
     ) -> Result<(), Refused> {
-        let key = attribute.key();
-        if attribute.is_position() {
+        let key = match attribute {
+            Number::Damping => "damping",
+            Number::Frictionloss => "frictionloss",
+            Number::Armature => "armature",
+            Number::Springref => "springref",
+            Number::Ref => "ref",
+            _ => "stiffness",
+        };
+        if matches!(attribute, Number::Springref | Number::Ref) {
             let (joint, element) = self.joint_with_axis(name)?;
             let all = self.numbers(element, JOINT, key)?;
             let before = first(all.as_deref());
@@ -104,13 +89,13 @@ impl<'x> Sheet<'x, '_> {
             return self.set(element, key, number(self.in_file_unit(&joint, after)));
         }
         let (joint, element) = self.joint(name)?;
-        if matches!(attribute, JointNumber::Damping | JointNumber::Stiffness) {
+        if matches!(attribute, Number::Damping | Number::Stiffness) {
             self.write_out_springdamper(&joint, element)?;
         }
         let mut all = self.numbers(element, JOINT, key)?.unwrap_or_default();
         let before = first(Some(&all));
         let carried = match attribute {
-            JointNumber::Damping | JointNumber::Armature => self.carried(name, key)?,
+            Number::Damping | Number::Armature => self.carried(name, key)?,
             _ => 0.0,
         };
         let whole = self.at_least_zero(name, key, amount.of(before + carried));
@@ -124,7 +109,7 @@ impl<'x> Sheet<'x, '_> {
         if same(after, before) {
             return Ok(());
         }
-        self.reshaped |= attribute == JointNumber::Armature;
+        self.reshaped |= attribute == Number::Armature;
         all.resize(all.len().max(1), 0.0);
         all[0] = after;
         self.set(element, key, numbers(&all))
@@ -249,12 +234,10 @@ impl<'x> Sheet<'x, '_> {
         let Some(name) = joint.attribute("name") else {
             return Ok(());
         };
-        let tendons = crate::xml::children(self.root, "tendon");
-        let tendons: Vec<Element<'x>> = tendons
-            .flat_map(|all| crate::xml::children(all, "fixed"))
-            .collect();
+        let tendons = children(self.root, "tendon");
+        let tendons: Vec<Element<'x>> = tendons.flat_map(|all| children(all, "fixed")).collect();
         for tendon in tendons {
-            let terms = crate::xml::children(tendon, JOINT);
+            let terms = children(tendon, JOINT);
             let mut rate = 0.0;
             for term in terms.filter(|term| term.attribute("joint") == Some(name)) {
                 let factor = term.attribute("coef").map_or(Ok(1.0), str::parse);

@@ -6,7 +6,7 @@ use crate::xml::{Element, child};
 
 use super::body::Group;
 use super::bytes::{number, numbers, same};
-use super::change::{Amount, JointNumber, Refused};
+use super::change::{Amount, Number, Refused};
 use super::sheet::Sheet;
 
 /// Attributes of `<dynamics>`.
@@ -18,18 +18,15 @@ const ORIGIN: &str = "origin";
 impl<'x> Sheet<'x, '_> {
     /// A number of an element; zero where it is missing.
     fn number_in(&self, element: Option<Element<'x>>, key: &str) -> Result<f64, Refused> {
-        let Some(element) = element else {
-            return Ok(0.0);
-        };
-        let all = self.numbers(element, "", key)?;
-        Ok(all.and_then(|all| all.first().copied()).unwrap_or_default())
+        let first = element.map(|element| self.first(element, "", key));
+        Ok(first.transpose()?.flatten().unwrap_or_default())
     }
 
     /// Changes the damping or the dry friction of a joint.
     pub(super) fn dynamics(
         &mut self,
         name: &str,
-        attribute: JointNumber,
+        attribute: Number,
         amount: Amount,
     ) -> Result<(), Refused> {
         let (_, joint) = self.joint_with_axis(name)?;
@@ -42,7 +39,7 @@ impl<'x> Sheet<'x, '_> {
             self.dynamics.push((joint, [damping?, friction?]));
             self.dynamics.len() - 1
         };
-        let place = usize::from(attribute == JointNumber::Frictionloss);
+        let place = usize::from(attribute == Number::Frictionloss);
         let before = self.dynamics[index].1[place];
         let after = self.at_least_zero(name, DYNAMICS[place], amount.of(before));
         self.dynamics[index].1[place] = after;
@@ -98,39 +95,31 @@ impl<'x> Sheet<'x, '_> {
         )
     }
 
-    /// Writes masses and inertias of a group.
-    pub(super) fn write_links(&mut self, group: &Group) -> Result<(), Refused> {
-        let inertial = child(self.body(group.head)?, "inertial");
-        if let Some(inertial) = inertial.filter(|_| !group.reshaped)
-            && self.is_alone(group)
-        {
-            let (before, after) = (group.before, group.after);
-            if !same(before.mass, after.mass) {
-                self.set_in(inertial, "mass", &[("value", number(after.mass))])?;
-            }
-            if numbers(&before.centre) != numbers(&after.centre) {
-                self.set_in(inertial, ORIGIN, &[("xyz", numbers(&after.centre))])?;
-            }
-            if !same(group.factor, 1.0)
-                && let Some(inertia) = child(inertial, "inertia")
-            {
-                for key in ENTRIES {
-                    let entry = self.number_in(Some(inertia), key)?;
-                    if entry != 0.0 {
-                        self.set(inertia, key, number(entry * group.factor))?;
-                    }
-                }
-            }
-            return Ok(());
+    /// Changes numbers of `<inertial>`, in its own axes.
+    pub(super) fn write_link_numbers(
+        &mut self,
+        inertial: Element<'x>,
+        group: &Group,
+    ) -> Result<(), Refused> {
+        let (before, after) = (group.before, group.after);
+        if !same(before.mass, after.mass) {
+            self.set_in(inertial, "mass", &[("value", number(after.mass))])?;
         }
-        for (link, own) in self.shares(group)? {
-            self.write_link(link, own)?;
+        if numbers(&before.centre) != numbers(&after.centre) {
+            self.set_in(inertial, ORIGIN, &[("xyz", numbers(&after.centre))])?;
+        }
+        let inertia = child(inertial, "inertia").filter(|_| !same(group.factor, 1.0));
+        for key in ENTRIES {
+            let entry = self.number_in(inertia, key)?;
+            if let Some(inertia) = inertia.filter(|_| entry != 0.0) {
+                self.set(inertia, key, number(entry * group.factor))?;
+            }
         }
         Ok(())
     }
 
     /// Writes all numbers of the inertia of a link, in its axes.
-    fn write_link(&mut self, link: usize, own: Inertia) -> Result<(), Refused> {
+    pub(super) fn write_link(&mut self, link: usize, own: Inertia) -> Result<(), Refused> {
         let element = self.body(link)?;
         let tensor = within_triangle(own.tensor);
         let (mass, place) = (number(own.mass), numbers(&own.centre));

@@ -7,7 +7,7 @@ use crate::xml::{Element, children, tag};
 
 use super::bytes::numbers;
 use super::change::{Refused, refused};
-use super::sheet::{Sheet, read};
+use super::sheet::Sheet;
 
 use super::super::GRAVITY;
 use super::super::schema::disabled;
@@ -25,12 +25,9 @@ impl<'x> Sheet<'x, '_> {
 
     /// The step of the simulation.
     pub(super) fn timestep(&self) -> Result<f64, Refused> {
-        let option = self.option("timestep");
-        let given = option.and_then(|option| Some((option, option.attribute("timestep")?)));
-        let Some((option, given)) = given else {
-            return Ok(TIMESTEP);
-        };
-        let step = read(given, option, "timestep")?.first().copied();
+        let step = self.option("timestep");
+        let step = step.map(|option| self.first(option, "", "timestep"));
+        let step = step.transpose()?.flatten();
         Ok(step.filter(|step| *step > 0.0).unwrap_or(TIMESTEP))
     }
 
@@ -41,11 +38,9 @@ impl<'x> Sheet<'x, '_> {
             return Err(refused(Code::NotAllowedHere, tag(self.root), message, help));
         }
         let option = self.option("gravity");
-        let given = option.and_then(|option| Some((option, self.own(option, "gravity")?)));
-        let before = match given {
-            Some((option, given)) => read(&given, option, "gravity")?,
-            None => GRAVITY.to_vec(),
-        };
+        let given = option.map(|option| self.numbers(option, "", "gravity"));
+        let before = given.transpose()?.flatten();
+        let before = before.unwrap_or_else(|| GRAVITY.to_vec());
         if before == gravity {
             return Ok(());
         }

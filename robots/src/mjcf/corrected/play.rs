@@ -86,8 +86,7 @@ impl<'x> Sheet<'x, '_> {
     /// Gives the drive of a joint a small inertia where it has none: between drive and load no body has any.
     fn give_inertia(&mut self, name: &str, element: Element<'x>) -> Result<(), Refused> {
         let number_of = |key: &str| -> Result<f64, Refused> {
-            let all = self.numbers(element, "joint", key)?;
-            Ok(all.and_then(|all| all.first().copied()).unwrap_or_default())
+            Ok(self.first(element, "joint", key)?.unwrap_or_default())
         };
         if number_of("armature")? + self.carried(name, "armature")? > 0.0 {
             return Ok(());

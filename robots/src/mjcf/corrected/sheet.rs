@@ -144,6 +144,17 @@ impl<'x, 'f> Sheet<'x, 'f> {
             .transpose()
     }
 
+    /// The first number of an attribute.
+    pub(super) fn first(
+        &self,
+        element: Element<'x>,
+        kinds: &str,
+        key: &str,
+    ) -> Result<Option<f64>, Refused> {
+        let all = self.numbers(element, kinds, key)?;
+        Ok(all.and_then(|all| all.first().copied()))
+    }
+
     /// Changes an attribute of an element.
     pub(super) fn set(
         &mut self,
@@ -304,12 +315,8 @@ impl<'x, 'f> Sheet<'x, 'f> {
         let place = place.map(|place| place.start);
         place.map_err(|file| {
             let message = format!("the element ends in `{file}`");
-            refused(
-                Code::NotAllowedHere,
-                tag(element),
-                message,
-                "write it into one file",
-            )
+            let help = "write it into one file";
+            refused(Code::NotAllowedHere, tag(element), message, help)
         })
     }
 
@@ -407,12 +414,8 @@ pub(super) fn read(text: &str, element: Element<'_>, key: &str) -> Result<Vec<f6
             "`{key}` is no list of numbers: `{}`",
             appell_spec::shown(text)
         );
-        refused(
-            Code::WrongType,
-            tag(element),
-            message,
-            "write numbers separated by blanks",
-        )
+        let help = "write numbers separated by blanks";
+        refused(Code::WrongType, tag(element), message, help)
     })
 }
 

@@ -19,6 +19,7 @@ mod typed;
 use appell_spec::mechanism::{Constraint, ConstraintKind, Mechanism};
 
 use crate::mechanics::algebra::Algebra;
+use crate::mechanics::expressions::Setting;
 use crate::mechanics::finding::Outcome;
 use crate::mechanics::kinematics::root_of;
 use crate::mechanics::row;
@@ -27,7 +28,7 @@ use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, IdentityTest};
 
 use comparison::Pair;
-use inertial::{Inertial, Row, room};
+use inertial::{Inertial, Row};
 use lagrange::Lagrange;
 use points::Points;
 
@@ -48,8 +49,8 @@ const BY_LAGRANGE: [&str; 2] = ["accelerations", "constraint forces"];
 struct Claim {
     against: Against,
     quantity: &'static str,
-    /// `None` if the time limit was reached before they were derived.
-    pairs: Option<Vec<Pair>>,
+    /// None if the time limit was reached before they were derived.
+    pairs: Vec<Pair>,
 }
 
 /// Compares a derivation with the other formulations of the same mechanism. Fails if their equations exceed the limit
@@ -91,10 +92,10 @@ fn claims(
     let by_speed = |derived: &[Expr], other: &[Expr]| named(&speeds, derived, other);
 
     let reactions = &derivation.reactions_in_loads;
-    let new = |algebra: &mut Algebra| Inertial::new(algebra, mechanism, symbols, rates, reactions);
-    let allowed = room(algebra, new)?;
-    let definitions = room(algebra, |algebra| allowed.definitions(algebra))?;
-    let rows = room(algebra, |algebra| allowed.rows(algebra))?;
+    let setting = Setting::new(mechanism, symbols, rates);
+    let allowed = Inertial::new(algebra, setting, reactions)?;
+    let definitions = allowed.definitions(algebra)?;
+    let rows = allowed.rows(algebra)?;
     let violated = rows.iter().map(|row| Pair {
         entry: mechanism.constraints[row.constraint].name.clone(),
         derived: row.value,
@@ -104,12 +105,12 @@ fn claims(
         Claim {
             against: Against::Spec,
             quantity: "pseudo-velocities",
-            pairs: Some(by_speed(&symbols.speeds, &definitions)),
+            pairs: by_speed(&symbols.speeds, &definitions),
         },
         Claim {
             against: Against::Spec,
             quantity: "constraints",
-            pairs: Some(violated.collect()),
+            pairs: violated.collect(),
         },
     ];
     if !is_time() {
@@ -132,25 +133,18 @@ fn claims(
         by_speed(&derivation.forces, &kane.forces),
         by_speed(&motion.accelerations, &kane.accelerations),
     ];
-    claims.extend(
-        BY_KANE
-            .into_iter()
-            .zip(by_kane)
-            .map(|(quantity, pairs)| Claim {
-                against: Against::Kane,
-                quantity,
-                pairs: Some(pairs),
-            }),
-    );
+    let by_kane = BY_KANE.into_iter().zip(by_kane);
+    claims.extend(by_kane.map(|(quantity, pairs)| Claim {
+        against: Against::Kane,
+        quantity,
+        pairs,
+    }));
     if !is_time() {
         claims.extend(not_reached(Against::Lagrange, &BY_LAGRANGE));
         return Ok(claims);
     }
 
-    let new = |algebra: &mut Algebra| {
-        Inertial::new(algebra, mechanism, symbols, &symbols.rates, reactions)
-    };
-    let unconstrained = room(algebra, new)?;
+    let unconstrained = Inertial::new(algebra, Setting::free(mechanism, symbols), reactions)?;
     let lagrange = lagrange::lagrange(algebra, &unconstrained, rates, &given)?;
     let coordinates = mechanism.coordinates.iter();
     let coordinates: Vec<&str> = coordinates.map(|q| q.label.name.as_str()).collect();
@@ -158,7 +152,7 @@ fn claims(
     claims.push(Claim {
         against: Against::Lagrange,
         quantity: BY_LAGRANGE[0],
-        pairs: Some(named(&coordinates, &accelerations, &lagrange.accelerations)),
+        pairs: named(&coordinates, &accelerations, &lagrange.accelerations),
     });
     claims.extend(reaction_claims(
         algebra,
@@ -168,7 +162,7 @@ fn claims(
         &lagrange,
         kane.total_reaction,
     )?);
-    claims.retain(|claim| claim.pairs.as_ref().is_none_or(|pairs| !pairs.is_empty()));
+    claims.retain(|claim| !claim.pairs.is_empty());
     Ok(claims)
 }
 
@@ -177,7 +171,7 @@ fn not_reached(against: Against, quantities: &[&'static str]) -> impl Iterator<I
     quantities.iter().map(move |&quantity| Claim {
         against,
         quantity,
-        pairs: None,
+        pairs: Vec::new(),
     })
 }
 
@@ -193,8 +187,7 @@ fn reaction_claims(
     let constraints = &derivation.constraints;
     let forces = reactions::reactions(
         algebra,
-        mechanism,
-        &derivation.symbols,
+        Setting::free(mechanism, &derivation.symbols),
         constraints,
         &derivation.velocities.violating,
         &derivation.bodies,
@@ -237,7 +230,7 @@ fn reaction_claims(
     let mut claims = vec![Claim {
         against: Against::Lagrange,
         quantity: BY_LAGRANGE[1],
-        pairs: Some(pairs),
+        pairs,
     }];
     // The actuators of prescribed motions also have reactions.
     let is_driven = !derivation.given.is_empty();
@@ -249,7 +242,7 @@ fn reaction_claims(
         claims.push(Claim {
             against: Against::Newton,
             quantity: "sum of the constraint forces",
-            pairs: Some(named(&axes, &sum, &total)),
+            pairs: named(&axes, &sum, &total),
         });
     }
     Ok(claims)
@@ -282,17 +275,16 @@ fn generalized_accelerations(
     allowed: &Inertial<'_>,
     accelerations: &[Expr],
 ) -> Outcome<Vec<Expr>> {
-    let mut all = Vec::with_capacity(allowed.rates.len());
-    for &rate in allowed.rates {
-        let along = |algebra: &mut Algebra| {
-            let mut parts = vec![allowed.time().of(algebra, rate)];
-            for (&speed, &acceleration) in allowed.symbols.speeds.iter().zip(accelerations) {
-                let partial = algebra.derivative(rate, speed);
-                parts.push(algebra.graph.mul(partial, acceleration));
-            }
-            Ok(algebra.graph.sum(&parts))
-        };
-        all.push(room(algebra, along)?);
+    let Setting { symbols, rates, .. } = allowed.setting;
+    let mut all = Vec::with_capacity(rates.len());
+    for &rate in rates {
+        let mut parts = vec![allowed.setting.rate(algebra, rate)];
+        for (&speed, &acceleration) in symbols.speeds.iter().zip(accelerations) {
+            let partial = algebra.derivative(rate, speed);
+            parts.push(algebra.graph.mul(partial, acceleration));
+        }
+        all.push(algebra.graph.sum(&parts));
+        algebra.check_size()?;
     }
     Ok(all)
 }
@@ -308,11 +300,10 @@ fn decide(
     let mut judge = Judge::new(mechanism, derivation);
     let mut comparisons = Vec::with_capacity(claims.len());
     for claim in claims {
-        let pairs = claim.pairs.unwrap_or_default();
         comparisons.push(Comparison {
             against: claim.against,
             quantity: claim.quantity,
-            agreement: judge.agreement(algebra, &pairs, is_time),
+            agreement: judge.agreement(algebra, &claim.pairs, is_time),
         });
     }
     FormulationComparison {

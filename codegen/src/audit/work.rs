@@ -3,9 +3,9 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{InputId, LoadId, LoadKind};
 
-use super::bench::{Audit, Bench, listed};
+use super::bench::{Audit, Bench};
 use crate::mechanics::algebra::Algebra;
-use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::finding::{Finding, Item, listed};
 use crate::symbolic::{Expr, SymbolId};
 
 pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {

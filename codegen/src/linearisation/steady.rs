@@ -8,7 +8,6 @@ use appell_spec::mechanism::Mechanism;
 
 use super::structure::Structure;
 use crate::mechanics::Derivation;
-use crate::mechanics::expressions::Lowering;
 use crate::symbolic::{Expr, Graph, Substitution, SymbolId};
 
 /// Why conditions do not define a motion.
@@ -201,15 +200,11 @@ impl Builder<'_> {
     /// Expresses the other pseudo-velocities by their definitions, if these contain as many constant rates.
     fn speeds_in_rates(&mut self) -> Result<(), SteadyError> {
         let symbols = self.derivation.symbols.clone();
-        let lowering = Lowering {
-            symbols: &symbols,
-            rates: &symbols.rates,
-        };
         let constant = self.constant_rates()?;
         let (mut written, mut used) = (Vec::new(), Vec::new());
         for (&speed, spec) in symbols.speeds.iter().zip(&self.mechanism.pseudo_velocities) {
             let graph = &mut self.derivation.algebra.graph;
-            let Ok(definition) = lowering.lower(graph, &spec.definition) else {
+            let Ok(definition) = symbols.lower(graph, &spec.definition) else {
                 continue;
             };
             if self.motion.gives(speed) {

@@ -8,6 +8,7 @@ use appell_spec::mechanism::{ConstraintId, FrameId, Mechanism};
 
 use super::Derivation;
 use super::arguments::input_symbols;
+use super::expressions::Setting;
 use super::finding::Outcome;
 use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energies, acceleration_energy,
@@ -309,14 +310,8 @@ impl Derivation {
         if !self.dependent.values.is_empty() {
             return self.bodies.clone();
         }
-        motions_in_ground(
-            &mut self.algebra,
-            mechanism,
-            &self.symbols,
-            &self.kinematics,
-            &self.velocities.rates,
-            &self.bodies,
-        )
+        let setting = Setting::new(mechanism, &self.symbols, &self.velocities.rates);
+        motions_in_ground(&mut self.algebra, setting, &self.kinematics, &self.bodies)
     }
 
     /// Normals and friction of the contacts, unless they are constant.
@@ -365,8 +360,7 @@ impl Derivation {
         let bodies = self.bodies_in_ground(mechanism);
         reactions::reactions(
             &mut self.algebra,
-            mechanism,
-            &self.symbols,
+            Setting::free(mechanism, &self.symbols),
             &self.constraints,
             &self.velocities.violating,
             &bodies,

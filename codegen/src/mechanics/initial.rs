@@ -98,7 +98,7 @@ pub fn vanishing_lengths(
             continue;
         };
         let graph = &mut algebra.graph;
-        let d = kinematics.between(graph, mechanism, a, b, GROUND);
+        let d = kinematics.between(graph, a, b, GROUND);
         let lasting: Vec<Expr> = d.into_iter().filter(|&c| c != Graph::ZERO).collect();
         let vanishes = match *lasting {
             [component] => state.vanishes(graph, component),

@@ -2,7 +2,7 @@
 //! accelerations, and solved with the pivots of the motion.
 
 use super::algebra::{Algebra, name_of};
-use super::finding::{Item, Outcome, division_by_zero};
+use super::finding::{Item, Outcome, defined};
 use super::gibbs_appell::GibbsForm;
 use super::motion::{Block, Motion};
 use super::recursion::Recursion;
@@ -79,10 +79,8 @@ impl ImplicitMotion<'_> {
             let mut right = Vec::with_capacity(residual.len());
             for &r in residual {
                 let partial = algebra.derivative(r, variable);
-                let partial = actual
-                    .apply(&mut algebra.graph, partial)
-                    .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
-                right.push(partial);
+                let partial = actual.apply(&mut algebra.graph, partial);
+                right.push(defined(partial, Item::Mechanism)?);
             }
             let mut column = self.motion.solved_for(algebra, symbols, variable, right);
             for &rate in self.coordinate_rates {

@@ -13,7 +13,7 @@
 
 use super::Unbound;
 use super::algebra::{Algebra, name_of, named3};
-use super::dependent::{DependentSpeeds, apply};
+use super::dependent::DependentSpeeds;
 use super::finding::Outcome;
 use super::gibbs_appell::ActualMotion;
 use super::motion::Motion;
@@ -58,7 +58,7 @@ impl Held {
     ) -> Outcome<Vec<Expr>> {
         let partials = of.iter().map(|&e| algebra.derivative(e, variable));
         let partials: Vec<Expr> = partials.collect();
-        apply(actual, algebra, &partials)
+        algebra.apply(actual, &partials)
     }
 }
 
@@ -186,7 +186,7 @@ fn held(
     let pairs = speeds.chain(accelerations.iter().zip(&happening));
     let mut pairs: Vec<(Expr, Expr)> = pairs.map(|(&symbol, &value)| (symbol, value)).collect();
     let mut actual = Substitution::of_parts(graph, &pairs).keeping_names();
-    let work = apply(&mut actual, algebra, &residual[symbols.speeds.len()..])?;
+    let work = algebra.apply(&mut actual, &residual[symbols.speeds.len()..])?;
     let graph = &mut algebra.graph;
     let multipliers = dependent.solved_multipliers(graph, &work);
     pairs.extend(dependent.multipliers.iter().copied().zip(multipliers));

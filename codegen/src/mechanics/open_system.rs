@@ -2,7 +2,7 @@
 //! that remain symbols for display.
 
 use super::algebra::Algebra;
-use super::finding::{Item, Outcome, division_by_zero};
+use super::finding::Outcome;
 use super::symbols::ids;
 use crate::symbolic::{Expr, Graph, Substitution};
 
@@ -105,7 +105,6 @@ impl OpenSystem {
             .zip(values.iter().copied())
             .collect();
         let mut actual = Substitution::of_parts(&algebra.graph, &parts);
-        let put_in = actual.apply_all(&mut algebra.graph, exprs);
-        put_in.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+        algebra.apply(&mut actual, exprs)
     }
 }

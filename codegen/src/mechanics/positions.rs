@@ -4,12 +4,11 @@ use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, Mechanism};
 
 use super::algebra::Algebra;
-use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Finding, Item, Outcome, defined, listed};
 use super::kinematics::Kinematics;
 use super::motions::told;
 use super::rank::{LinearRow, Standing, is_finite, standings};
-use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Intervals};
 
 /// The position constraints `f(q, t) = 0` of a mechanism.
@@ -33,15 +32,11 @@ impl Positions {
     /// The constraints with their derivatives.
     pub fn new(
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        symbols: &Symbols,
+        setting: Setting<'_>,
         kinematics: &Kinematics,
         intervals: &mut Intervals,
     ) -> Outcome<Self> {
-        let lowering = Lowering {
-            symbols,
-            rates: &symbols.rates,
-        };
+        let (mechanism, symbols) = (setting.mechanism, setting.symbols);
         let (mut positions, mut findings) = (Self::default(), Vec::new());
         for (index, constraint) in mechanism.constraints.entries() {
             let ConstraintKind::Position {
@@ -50,11 +45,9 @@ impl Positions {
             else {
                 continue;
             };
-            let residual = lowering
-                .lower(&mut algebra.graph, zero)
-                .ok()
-                .and_then(|zero| told(algebra, mechanism, symbols, kinematics, zero))
-                .ok_or_else(|| vec![division_by_zero(Item::Constraint(index))])?;
+            let item = Item::Constraint(index);
+            let residual = setting.lower_in(&mut algebra.graph, item, zero)?;
+            let residual = defined(told(algebra, symbols, kinematics, residual), item)?;
             let row: Vec<Expr> = symbols
                 .coordinates
                 .iter()
@@ -66,12 +59,8 @@ impl Positions {
                     .push(redundant(&constraint.name, index, &others));
                 continue;
             }
-            match positions.dependent_of(
-                algebra,
-                intervals,
-                &row,
-                dependent.map(CoordinateId::index),
-            ) {
+            let named = dependent.map(CoordinateId::index);
+            match positions.dependent_of(algebra, intervals, &row, named) {
                 Some(coordinate) => positions.dependent.push(coordinate),
                 None => findings.push(undetermined(mechanism, index, *dependent)),
             }
@@ -140,12 +129,11 @@ impl Positions {
 }
 
 fn redundant(name: &str, index: ConstraintId, others: &[String]) -> Finding {
-    let others: Vec<String> = others.iter().map(|other| format!("`{other}`")).collect();
     Finding {
         code: Code::RedundantConstraint,
         message: format!(
             "`{name}` follows from {} and is left out: the motion is the same without it",
-            others.join(", ")
+            listed(others.iter().map(String::as_str))
         ),
         item: Item::Constraint(index),
         help: "remove it".to_owned(),

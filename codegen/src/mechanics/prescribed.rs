@@ -6,7 +6,7 @@
 
 use super::Derivation;
 use super::algebra::Algebra;
-use super::finding::{Item, Outcome, division_by_zero};
+use super::finding::{Item, Outcome, defined};
 use super::gibbs_appell::{ActualMotion, BodyMotion};
 use super::loads::AppliedLoad;
 use crate::symbolic::vector::Vec3;
@@ -75,8 +75,10 @@ fn prescribed(
     standing: &mut Substitution,
     velocity: Expr,
 ) -> Outcome<Option<Expr>> {
-    let v_0 = standing.apply(&mut algebra.graph, velocity);
-    let v_0 = v_0.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+    let v_0 = defined(
+        standing.apply(&mut algebra.graph, velocity),
+        Item::Mechanism,
+    )?;
     let is_zero = algebra.test.is_zero(&algebra.graph, v_0);
     Ok((!is_zero).then_some(v_0))
 }

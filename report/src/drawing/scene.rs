@@ -8,6 +8,7 @@ use super::space::{Matrix, Vector};
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::mechanics::Derivation;
 use appell_codegen::mechanics::assemble;
+use appell_codegen::mechanics::expressions::Setting;
 use appell_codegen::mechanics::finding::Outcome;
 use appell_codegen::mechanics::initial::InitialState;
 use appell_codegen::program::{FunctionKind, Program};
@@ -49,7 +50,7 @@ impl Scene {
         let symbols = derivation.symbols.clone();
         let placement = {
             let (algebra, kinematics) = (&mut derivation.algebra, &derivation.kinematics);
-            Placement::new(algebra, mechanism, &symbols, kinematics)?
+            Placement::new(algebra, Setting::free(mechanism, &symbols), kinematics)?
         };
         let flat_across = placement.flat_across(&mut derivation.algebra);
         let kinds = [FunctionKind::PositionConstraints];

@@ -1,10 +1,10 @@
 //! Inward recursion: composite inertias, and the mass matrix from them.
 
-use appell_spec::mechanism::{Body, BodyId, Mechanism};
+use appell_spec::mechanism::BodyId;
 
 use super::super::algebra::{Algebra, named3};
-use super::super::expressions::Lowering;
-use super::super::finding::{Item, Outcome, division_by_zero};
+use super::super::expressions::Setting;
+use super::super::finding::{Item, Outcome};
 use super::links::{Link, Links, Place, Step};
 use crate::symbolic::vector::{self, Mat3, Vec3};
 use crate::symbolic::{Expr, Graph};
@@ -119,19 +119,13 @@ pub(super) fn with_products(
 /// Inertia of a body about its centre of mass.
 pub(super) fn central_inertia(
     graph: &mut Graph,
-    lowering: &Lowering<'_>,
+    setting: Setting<'_>,
     id: BodyId,
-    body: &Body,
 ) -> Outcome<Inertia> {
-    let failed = |_| vec![division_by_zero(Item::Body(id))];
-    let mut tensor = [vector::ZERO; 3];
-    if let Some(inertia) = &body.inertia {
-        for (target, row) in tensor.iter_mut().zip(&inertia.matrix) {
-            *target = lowering.lower_all(graph, row).map_err(failed)?;
-        }
-    }
+    let tensor = setting.inertia(graph, id)?;
+    let mass = &setting.mechanism.bodies[id].mass;
     Ok(Inertia {
-        mass: lowering.lower(graph, &body.mass).map_err(failed)?,
+        mass: setting.lower_in(graph, Item::Body(id), mass)?,
         moment: vector::ZERO,
         tensor,
     })
@@ -205,16 +199,15 @@ impl Links {
     pub(super) fn own_inertias(
         &self,
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        lowering: &Lowering<'_>,
+        setting: Setting<'_>,
     ) -> Outcome<Vec<Inertia>> {
         let mut inertias = vec![Inertia::NONE; self.all.len()];
-        for ((id, body), &Place { link, arm }) in mechanism.bodies.entries().zip(&self.bodies) {
+        for (id, &Place { link, arm }) in setting.mechanism.bodies.ids().zip(&self.bodies) {
             let Some(link) = link else {
                 continue;
             };
             let graph = &mut algebra.graph;
-            let central = central_inertia(graph, lowering, id, body)?;
+            let central = central_inertia(graph, setting, id)?;
             let placed = central.shifted(graph, arm);
             inertias[link] = inertias[link].plus(graph, &placed);
         }

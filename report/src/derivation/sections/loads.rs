@@ -9,7 +9,7 @@ use super::super::writer::Writer;
 use super::super::{Letter, Math, Span};
 use super::phrases::{equality, listed, math, words};
 use super::placement::{from_to, lowered};
-use appell_codegen::mechanics::time::TimeDerivative;
+use appell_codegen::mechanics::expressions::Setting;
 use appell_codegen::symbolic::{Expr, Graph};
 
 /// `F_drive = [0, u, 0] tilted at A, −F_drive at G; δP_drive = F_drive · (δv_A − δv_G)`
@@ -176,9 +176,8 @@ fn spring_damper(
         Connection::Along(own) => {
             let place = lowered(w, own);
             let derivation = &mut *w.derivation;
-            let symbols = &derivation.symbols;
-            let rates = &symbols.rates;
-            let rate = TimeDerivative { symbols, rates }.of(&mut derivation.algebra, place);
+            let free = Setting::free(w.mechanism, &derivation.symbols);
+            let rate = free.rate(&mut derivation.algebra, place);
             let mut force = Vec::new();
             if let Some(Spring { stiffness, relaxed }) = spring {
                 let stretch = difference(w, place, relaxed);

@@ -3,6 +3,7 @@
 use super::super::lexicon::AXES;
 use super::super::{Equation, Letter, Math, Section, Writer};
 use super::phrases::{headed, with};
+use appell_codegen::mechanics::expressions::Setting;
 use appell_codegen::mechanics::finding::Outcome;
 use appell_codegen::mechanics::reactions::reactions;
 use appell_codegen::symbolic::Graph;
@@ -12,8 +13,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
     let d = &mut *w.derivation;
     let forces = reactions(
         &mut d.algebra,
-        w.mechanism,
-        &d.symbols,
+        Setting::free(w.mechanism, &d.symbols),
         &d.constraints,
         &d.velocities.violating,
         &d.bodies,

@@ -122,6 +122,11 @@ impl Algebra {
         self.derivatives[place].1.of(&mut self.graph, expr)
     }
 
+    /// [`Algebra::derivative`] of each component.
+    pub fn derivative3(&mut self, v: Vec3, symbol: Expr) -> Vec3 {
+        v.map(|component| self.derivative(component, symbol))
+    }
+
     /// Expressions after a substitution.
     pub fn apply(&mut self, substitution: &mut Substitution, exprs: &[Expr]) -> Outcome<Vec<Expr>> {
         let applied = substitution.apply_all(&mut self.graph, exprs);

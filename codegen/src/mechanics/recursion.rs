@@ -31,7 +31,7 @@ use crate::symbolic::{Expr, Graph, Rational};
 
 use inertia::{Inertia, Wrench, central_inertia};
 use links::Links;
-use movement::{Driven, LinkMotion};
+use movement::LinkMotion;
 pub use partials::Differentiable;
 
 /// Mechanisms with fewer speeds have shorter equations in expanded form.
@@ -103,12 +103,7 @@ impl Recursion {
 
     /// The motions of the links at ω̇ = 0.
     fn unaccelerated(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
-        let driven = Driven {
-            ground: vector::ZERO,
-            accelerations: None,
-            kind: "0",
-        };
-        self.links.motions(algebra, &driven)
+        self.links.motions(algebra, vector::ZERO, &[], "0")
     }
 
     /// The motions of the bodies as sums over speeds.
@@ -209,22 +204,12 @@ impl Recursion {
 
     /// The motions of the links at ω̇ = 0 with the fictitious acceleration of the ground.
     fn falling(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
-        let driven = Driven {
-            ground: self.rise,
-            accelerations: None,
-            kind: "g",
-        };
-        self.links.motions(algebra, &driven)
+        self.links.motions(algebra, self.rise, &[], "g")
     }
 
     /// The links in the actual motion.
     pub fn differentiable(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Differentiable {
-        let driven = Driven {
-            ground: self.rise,
-            accelerations: Some(accelerations),
-            kind: "",
-        };
-        let motions = self.links.motions(algebra, &driven);
+        let motions = self.links.motions(algebra, self.rise, accelerations, "");
         let (own, composites) = (&self.own, &self.composites);
         Differentiable::new(algebra, &self.links, own, composites, self.rise, motions)
     }
@@ -279,12 +264,7 @@ impl Recursion {
         accelerations: &[Expr],
         kind: &'static str,
     ) -> Vec<Expr> {
-        let driven = Driven {
-            ground: self.rise,
-            accelerations: Some(accelerations),
-            kind,
-        };
-        let motions = self.links.motions(algebra, &driven);
+        let motions = self.links.motions(algebra, self.rise, accelerations, kind);
         let wrenches = self.links.wrenches(algebra, &self.own, &motions, kind);
         self.links.felt(&mut algebra.graph, &wrenches)
     }
@@ -303,11 +283,8 @@ impl Recursion {
                 order.push(speed);
             }
         }
-        order.extend(
-            (0..speeds)
-                .filter(|speed| !order.contains(speed))
-                .collect::<Vec<_>>(),
-        );
+        let rest: Vec<usize> = (0..speeds).filter(|k| !order.contains(k)).collect();
+        order.extend(rest);
         order
     }
 
@@ -336,8 +313,7 @@ impl Recursion {
 
 fn partials(algebra: &mut Algebra, v: Vec3, speeds: &[Expr]) -> Vec<Vec3> {
     let by = speeds.iter();
-    by.map(|&speed| v.map(|c| algebra.derivative(c, speed)))
-        .collect()
+    by.map(|&speed| algebra.derivative3(v, speed)).collect()
 }
 
 /// Gravity on all bodies with constant acceleration.

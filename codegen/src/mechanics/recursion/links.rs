@@ -9,8 +9,8 @@ use super::super::expressions::Setting;
 use super::super::kinematics::Kinematics;
 use super::super::rotation::Rotation;
 use super::super::symbols::ids;
-use crate::symbolic::vector::{self, Vec3};
-use crate::symbolic::{Expr, SymbolId};
+use crate::symbolic::vector::{self, Mat3, Vec3};
+use crate::symbolic::{Expr, Graph, SymbolId};
 
 /// Axes with an origin.
 #[derive(Debug, Clone)]
@@ -46,6 +46,40 @@ pub(super) enum Step {
         /// Rate of these at fixed speeds.
         d_ddot: Vec3,
     },
+}
+
+impl Step {
+    /// The turns from the axes of the carrier to those of the link.
+    pub(super) fn turns(&self) -> &[Rotation] {
+        match self {
+            Self::Rotation { turns, .. } => turns,
+            Self::Shift { .. } => &[],
+        }
+    }
+
+    /// A vector of the carrier in the axes of the link.
+    pub(super) fn inward(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        (self.turns().iter()).fold(v, |v, turn| turn.in_child(graph, v))
+    }
+
+    /// A vector of the link in the axes of the carrier.
+    pub(super) fn outward(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        (self.turns().iter().rev()).fold(v, |v, turn| turn.in_parent(graph, v))
+    }
+
+    /// A tensor of the link in the axes of the carrier.
+    pub(super) fn tensor_outward(&self, graph: &mut Graph, tensor: &Mat3) -> Mat3 {
+        let turns = self.turns().iter().rev();
+        turns.fold(*tensor, |t, turn| turn.tensor_in_parent(graph, &t))
+    }
+
+    /// A column as angular and linear acceleration.
+    pub(super) fn directed(&self, column: Vec3) -> (Vec3, Vec3) {
+        match self {
+            Self::Rotation { .. } => (column, vector::ZERO),
+            Self::Shift { .. } => (vector::ZERO, column),
+        }
+    }
 }
 
 /// A point fixed in a link, by its position from the origin.
@@ -165,10 +199,8 @@ impl Planting<'_> {
         for &point in way.iter().rev() {
             let offset = self.kinematics.offset(point).v;
             place.arm = self.algebra.graph.add3(place.arm, offset);
-            if offset
-                .iter()
-                .any(|&c| self.algebra.graph.mentions(c, &self.changing))
-            {
+            let graph = &self.algebra.graph;
+            if offset.iter().any(|&c| graph.mentions(c, &self.changing)) {
                 let link = self.shifted(place, &self.setting.mechanism.points[point].name.clone());
                 place = Place::at(Some(link));
                 self.known.insert((axes, point), place);
@@ -255,42 +287,32 @@ impl Planting<'_> {
     ) -> usize {
         let w_dot = self.setting.rate3(self.algebra, w);
         let w_dot = self.algebra.shortest3(w_dot);
-        let columns = self.columns(w);
-        self.push(Link {
-            name: self.setting.mechanism.frames[frame].name.clone(),
-            parent,
-            step: Step::Rotation { turns, w, w_dot },
-            columns,
-        })
+        let name = &self.setting.mechanism.frames[frame].name;
+        self.push(name, parent, Step::Rotation { turns, w, w_dot }, w)
     }
 
     fn shifted(&mut self, place: Place, name: &str) -> usize {
         let d = place.arm;
         let d_dot = self.setting.rate3(self.algebra, d);
         let d_ddot = self.setting.rate3(self.algebra, d_dot);
-        let columns = self.columns(d_dot);
-        self.push(Link {
-            name: name.to_owned(),
-            parent: place.link,
-            step: Step::Shift { d, d_dot, d_ddot },
-            columns,
-        })
+        self.push(name, place.link, Step::Shift { d, d_dot, d_ddot }, d_dot)
     }
 
-    fn push(&mut self, link: Link) -> usize {
-        self.links.push(link);
-        self.links.len() - 1
-    }
-
-    /// The nonzero partial velocities.
-    fn columns(&mut self, velocity: Vec3) -> Vec<(usize, Vec3)> {
+    /// Adds a link with the partial velocities of `velocity`, that of its step.
+    fn push(&mut self, name: &str, parent: Option<usize>, step: Step, velocity: Vec3) -> usize {
         let mut columns = Vec::new();
         for (place, &speed) in self.setting.symbols.speeds.iter().enumerate() {
-            let partial = velocity.map(|c| self.algebra.derivative(c, speed));
+            let partial = self.algebra.derivative3(velocity, speed);
             if partial != vector::ZERO {
                 columns.push((place, partial));
             }
         }
-        columns
+        self.links.push(Link {
+            name: name.to_owned(),
+            parent,
+            step,
+            columns,
+        });
+        self.links.len() - 1
     }
 }

@@ -8,7 +8,7 @@ use appell_spec::units::{Dimension, Unit};
 use super::algebra::Algebra;
 use super::auxiliary::AuxiliaryMotions;
 use super::expressions::Setting;
-use super::finding::{Finding, Item, Outcome, defined};
+use super::finding::{Finding, Item, Outcome, defined, unless_any};
 use super::frames::FrameVector;
 use super::kinematics::{Kinematics, root_of};
 use super::motions::told;
@@ -82,9 +82,7 @@ pub fn constraints(
         Ok(left_out) => warnings.extend(left_out),
         Err(refused) => findings.extend(refused),
     }
-    if !findings.is_empty() {
-        return Err(findings);
-    }
+    unless_any(findings)?;
     let auxiliary = AuxiliaryMotions::new(algebra, mechanism, &kinematics.frames, intervals, &rows);
     let names: Vec<String> = places.iter().map(|place| place.name(mechanism)).collect();
     warnings.extend(auxiliary.findings(mechanism, &rows, &names));

@@ -54,6 +54,15 @@ pub fn defined<T>(value: Option<T>, item: Item) -> Outcome<T> {
     value.ok_or_else(|| vec![division_by_zero(item)])
 }
 
+/// Fails if there are findings.
+pub fn unless_any(findings: Vec<Finding>) -> Outcome<()> {
+    if findings.is_empty() {
+        Ok(())
+    } else {
+        Err(findings)
+    }
+}
+
 /// Names in a sentence: `` `a`, `b` ``.
 pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();

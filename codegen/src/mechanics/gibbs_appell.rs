@@ -5,7 +5,7 @@ use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, PointId};
 
 use super::algebra::{Algebra, named3};
 use super::expressions::Setting;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, unless_any};
 use super::frames::FrameVector;
 use super::kinematics::Kinematics;
 use crate::symbolic::vector::{self, Mat3, Vec3};
@@ -91,11 +91,8 @@ pub fn body_motions(
             rotation,
         });
     }
-    if findings.is_empty() {
-        Ok(motions)
-    } else {
-        Err(findings)
-    }
+    unless_any(findings)?;
+    Ok(motions)
 }
 
 impl Setting<'_> {

@@ -8,7 +8,7 @@ use appell_spec::Code;
 
 use super::algebra::Algebra;
 use super::expressions::Setting;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, unless_any};
 use super::gibbs_appell::GibbsForm;
 use crate::symbolic::{Expr, Graph};
 
@@ -94,11 +94,7 @@ impl Given {
             item: Item::PseudoVelocity(appell_spec::mechanism::SpeedId::new(given.speed)),
             help: "let a load drive it, such as a torque that an input sets".to_owned(),
         });
-        if self.is_empty() {
-            Ok(())
-        } else {
-            Err(findings.collect())
-        }
+        unless_any(findings.collect())
     }
 }
 

@@ -8,7 +8,7 @@ use super::algebra::Algebra;
 use super::finding::{Finding, Item};
 use super::kinematics::Kinematics;
 use super::motion::Motion;
-use super::symbols::{Symbols, ids};
+use super::symbols::{Symbols, ids, speed_name};
 use crate::symbolic::{Expr, Graph, SymbolId, evaluate};
 
 /// Values of all symbols at the initial state, without inputs.
@@ -160,7 +160,7 @@ pub fn singularities(
     let (speeds, pivots): (Vec<usize>, Vec<Expr>) = motion.pivots().into_iter().unzip();
     for (speed, value) in speeds.into_iter().zip(state.of(graph, &pivots)) {
         if value == 0.0 || !value.is_finite() {
-            let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
+            let name = speed_name(mechanism, speed);
             findings.push(Finding {
                 code: Code::SingularMassMatrix,
                 message: format!("the mass matrix is singular for `{name}` at the initial state"),

@@ -6,7 +6,7 @@ use appell_spec::mechanism::{Connection, GROUND, LoadId, LoadKind, Mechanism, Sp
 
 use super::algebra::Algebra;
 use super::expressions::{DivisionByZero, Setting};
-use super::finding::{Finding, Item, Outcome, defined, division_by_zero};
+use super::finding::{Finding, Item, Outcome, defined, division_by_zero, unless_any};
 use super::frames::FrameVector;
 use super::kinematics::Kinematics;
 use super::motions::motions;
@@ -165,14 +165,11 @@ pub fn applied_loads(
             Err(DivisionByZero) => findings.push(undefined(index, &load.kind)),
         }
     }
-    if findings.is_empty() {
-        let mut told = motions(algebra, setting.symbols, kinematics);
-        replace(&mut loads, &mut algebra.graph, &mut told)?;
-        name_each_other(algebra, setting, kinematics, &mut loads)?;
-        Ok(loads)
-    } else {
-        Err(findings)
-    }
+    unless_any(findings)?;
+    let mut told = motions(algebra, setting.symbols, kinematics);
+    replace(&mut loads, &mut algebra.graph, &mut told)?;
+    name_each_other(algebra, setting, kinematics, &mut loads)?;
+    Ok(loads)
 }
 
 /// Substitutes forces of loads that other loads refer to.

@@ -5,7 +5,7 @@ use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, Mechani
 
 use super::algebra::Algebra;
 use super::expressions::Setting;
-use super::finding::{Finding, Item, Outcome, defined, listed};
+use super::finding::{Finding, Item, Outcome, defined, listed, unless_any};
 use super::kinematics::Kinematics;
 use super::motions::told;
 use super::rank::{LinearRow, Standing, is_finite, standings};
@@ -69,11 +69,8 @@ impl Positions {
             positions.residual.push(residual);
             positions.jacobian.push(row);
         }
-        if findings.is_empty() {
-            Ok(positions)
-        } else {
-            Err(findings)
-        }
+        unless_any(findings)?;
+        Ok(positions)
     }
 
     /// The names of the constraints of which this one, with its Jacobian row, is a linear combination in every

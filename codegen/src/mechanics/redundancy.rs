@@ -6,7 +6,7 @@ use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintId, ConstraintKind, FrameId, GROUND, Mechanism};
 
 use super::algebra::Algebra;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, listed, unless_any};
 use super::frames::{FrameVector, Frames};
 use super::rank::{Combination, LinearRow, Standing, is_finite, standings};
 use super::row::Row;
@@ -58,11 +58,8 @@ pub fn leave_out(
             refused.push(row);
         }
     }
-    if errors.is_empty() {
-        Ok(warnings)
-    } else {
-        Err(errors)
-    }
+    unless_any(errors)?;
+    Ok(warnings)
 }
 
 /// The first of the rows `open` that depends on those before, by its index among all rows.
@@ -176,10 +173,7 @@ fn resolved_in(
         .collect();
     let mut resolved = Vec::with_capacity(places.len());
     for (axis, (&place, letter)) in places.iter().zip(["x", "y", "z"]).enumerate() {
-        let unit = FrameVector {
-            frame,
-            v: vector::IDENTITY[axis],
-        };
+        let unit = FrameVector::unit(frame, axis);
         let along = frames.express(&mut algebra.graph, unit, GROUND);
         if !rows[place].is_active() {
             if along != vector::IDENTITY[axis] {
@@ -269,14 +263,11 @@ fn redundancy(
     if rows[spare].of_position || !others.is_empty() && others.iter().all(own) {
         return None;
     }
-    let names: Vec<String> = others
-        .into_iter()
-        .map(|other| format!("`{}`", rows[other].name))
-        .collect();
-    let reason = if names.is_empty() {
+    let reason = if others.is_empty() {
         "always holds".to_owned()
     } else {
-        format!("follows from {}", names.join(", "))
+        let names = others.into_iter().map(|other| rows[other].name.as_str());
+        format!("follows from {}", listed(names))
     };
     Some(Finding {
         code: Code::RedundantConstraint,

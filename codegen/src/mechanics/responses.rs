@@ -13,7 +13,7 @@ use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::contacts::Contact;
 use super::expressions::Setting;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, unless_any};
 use super::frames::FrameVector;
 use super::given::Given;
 use super::kinematics::Kinematics;
@@ -117,11 +117,8 @@ impl Answering<'_> {
                 Err(reason) => findings.push(untold(self.setting.mechanism, response, reason)),
             }
         }
-        if findings.is_empty() {
-            Ok(values)
-        } else {
-            Err(findings)
-        }
+        unless_any(findings)?;
+        Ok(values)
     }
 
     /// The rate of a vector relative to the ground, in the components of a frame.

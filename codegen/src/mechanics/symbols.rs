@@ -1,7 +1,7 @@
 //! The symbols of a mechanism.
 
 use appell_spec::expr::{Motion as MotionQuantity, Quantity, Response};
-use appell_spec::mechanism::{Axis, ConstraintKind, FrameId, LoadId, Mechanism, PointId};
+use appell_spec::mechanism::{Axis, ConstraintKind, FrameId, LoadId, Mechanism, PointId, SpeedId};
 use rustc_hash::FxHashMap;
 
 use crate::symbolic::{Expr, Graph, SymbolId};
@@ -240,6 +240,11 @@ impl Symbols {
     pub fn named(&self, quantity: Quantity) -> Option<Expr> {
         self.named.get(&quantity).copied()
     }
+}
+
+/// Name of a pseudo-velocity, by its index.
+pub(super) fn speed_name(mechanism: &Mechanism, speed: usize) -> &str {
+    &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name
 }
 
 /// The ids of expressions that are symbols.

@@ -7,7 +7,7 @@ use appell_spec::mechanism::{
 };
 
 use super::loads::acting;
-use crate::mechanics::algebra::Algebra;
+use crate::mechanics::algebra::{Algebra, replacing};
 use crate::mechanics::expressions::Setting;
 use crate::mechanics::finding::{Item, Outcome};
 use crate::symbolic::vector::{self, Mat3, Vec3};
@@ -151,9 +151,8 @@ impl<'a> Inertial<'a> {
     /// A velocity in terms of the generalised velocities: pseudo-velocities are replaced by their definitions.
     pub(super) fn velocity_along(&self, algebra: &mut Algebra, velocity: &Spec) -> Outcome<Expr> {
         let velocity = self.lower(algebra, velocity)?;
-        let speeds = self.setting.symbols.speeds.iter().copied();
-        let defined: Vec<(Expr, Expr)> = speeds.zip(self.definitions(algebra)?).collect();
-        let mut definitions = Substitution::of_parts(&algebra.graph, &defined);
+        let (speeds, defined) = (&self.setting.symbols.speeds, self.definitions(algebra)?);
+        let mut definitions = replacing(&algebra.graph, speeds, &defined);
         Ok(algebra.apply(&mut definitions, &[velocity])?[0])
     }
 

@@ -4,10 +4,10 @@
 
 use super::inertial::Inertial;
 use super::loads::{Which, efforts, generalized_force, potential};
-use crate::mechanics::algebra::Algebra;
+use crate::mechanics::algebra::{Algebra, replacing};
 use crate::mechanics::finding::Outcome;
 use crate::mechanics::rank::{LinearRow, Standing, standings};
-use crate::symbolic::{Expr, Graph, Rational, Substitution};
+use crate::symbolic::{Expr, Graph, Rational};
 
 /// The solution of Lagrange's equations.
 pub(super) struct Lagrange {
@@ -65,9 +65,7 @@ pub(super) fn lagrange(
         }
         right.push(constraints[row].right);
     }
-    let symbols = inertial.setting.symbols.rates.iter().copied();
-    let in_terms_of_speeds: Vec<(Expr, Expr)> = symbols.zip(rates.iter().copied()).collect();
-    let mut allowed = Substitution::of_parts(&algebra.graph, &in_terms_of_speeds);
+    let mut allowed = replacing(&algebra.graph, &inertial.setting.symbols.rates, rates);
     for entry in matrix.iter_mut().chain(&mut right) {
         *entry = algebra.apply(&mut allowed, &[*entry])?[0];
         algebra.check_size()?;

@@ -64,8 +64,7 @@ pub(super) fn efforts(
                 on,
                 body,
                 reaction_on,
-                frame,
-                vector,
+                ..
             } => {
                 let mut velocity = inertial.velocity(&mut algebra.graph, *body, *on);
                 if let Some(other) = reaction_on {
@@ -73,32 +72,28 @@ pub(super) fn efforts(
                     velocity = algebra.graph.sub3(velocity, other);
                 }
                 all.push(Effort {
-                    force: inertial.in_ground(algebra, *frame, vector)?,
+                    force: acting(algebra, inertial, &load.kind)?,
                     velocity,
                     external: reaction_on.is_none(),
                 });
             }
             LoadKind::Torque {
-                on,
-                reaction_on,
-                frame,
-                vector,
+                on, reaction_on, ..
             } => {
                 let mut velocity = inertial.turning(*on);
                 if let Some(other) = reaction_on {
                     velocity = algebra.graph.sub3(velocity, inertial.turning(*other));
                 }
                 all.push(Effort {
-                    force: inertial.in_ground(algebra, *frame, vector)?,
+                    force: acting(algebra, inertial, &load.kind)?,
                     velocity,
                     external: false,
                 });
             }
-            LoadKind::Generalized { velocity, force } => {
-                let force = inertial.lower(algebra, force)?;
+            LoadKind::Generalized { velocity, .. } => {
                 let velocity = inertial.velocity_along(algebra, velocity)?;
                 all.push(Effort {
-                    force: [force, Graph::ZERO, Graph::ZERO],
+                    force: acting(algebra, inertial, &load.kind)?,
                     velocity: [velocity, Graph::ZERO, Graph::ZERO],
                     external: false,
                 });

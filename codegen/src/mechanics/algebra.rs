@@ -343,6 +343,12 @@ pub fn seed(mechanism: &Mechanism) -> u64 {
         })
 }
 
+/// Replaces each of `parts` by its value.
+pub fn replacing(graph: &Graph, parts: &[Expr], values: &[Expr]) -> Substitution {
+    let pairs = parts.iter().copied().zip(values.iter().copied());
+    Substitution::of_parts(graph, &pairs.collect::<Vec<_>>())
+}
+
 /// `Σ a b`
 pub fn scalar_product(graph: &mut Graph, a: &[Expr], b: &[Expr]) -> Expr {
     let products: Vec<Expr> = a.iter().zip(b).map(|(&a, &b)| graph.mul(a, b)).collect();

@@ -8,7 +8,7 @@
 
 use appell_spec::mechanism::{CoordinateId, Mechanism};
 
-use super::algebra::{Algebra, name_of, scalar_product};
+use super::algebra::{Algebra, name_of, replacing, scalar_product};
 use super::constraints::Constraints;
 use super::contact_rows::ContactRows;
 use super::elimination::{Elimination, GeneralizedVelocities, OpenSystem};
@@ -153,9 +153,7 @@ impl DependentSpeeds {
 
     /// Substitutes the values for the symbols.
     pub fn actual(&self, graph: &Graph) -> Substitution {
-        let unknowns = self.system.unknowns.iter().copied();
-        let parts: Vec<(Expr, Expr)> = unknowns.zip(self.values.iter().copied()).collect();
-        Substitution::of_parts(graph, &parts).keeping_names()
+        replacing(graph, &self.system.unknowns, &self.values).keeping_names()
     }
 
     /// The solution method of the reduced equations.

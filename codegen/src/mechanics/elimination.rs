@@ -49,10 +49,10 @@ pub struct Elimination {
     pub rates: Vec<Expr>,
     /// The system of the remaining unknowns in the admissible motions.
     pub open: OpenSystem,
-    /// q̇ and the right-hand side of the open system when constraint rows are violated.
-    violating: (Vec<Expr>, Vec<Expr>),
-    violation_rates: Vec<Expr>,
-    carried_rates: Vec<Expr>,
+    /// The motions that violate constraint rows, likewise.
+    violating: Violation,
+    /// The right-hand side of the open system in these motions.
+    violated_right: Vec<Expr>,
 }
 
 /// Solves for q̇. Pivots must not vanish in the declared ranges; unknowns without such a pivot form a small
@@ -147,9 +147,12 @@ pub fn eliminate(
             right,
             ..violated.clone()
         },
-        violating: (violating, violated.right),
-        violation_rates,
-        carried_rates,
+        violating: Violation {
+            rates: violation_rates,
+            coordinate_rates: violating,
+            carried_rates,
+        },
+        violated_right: violated.right,
     })
 }
 
@@ -157,20 +160,18 @@ impl Elimination {
     /// Recombines equations of the open system: the equation at each of `places` becomes its row of `turned`,
     /// the sum of them all with the factors of that row.
     pub fn turn(&mut self, algebra: &mut Algebra, places: &[usize], turned: &[TurnedRow]) {
-        let before: Vec<Expr> = places
-            .iter()
-            .map(|&place| self.violating.1[place])
-            .collect();
+        let before = places.iter().map(|&place| self.violated_right[place]);
+        let before: Vec<Expr> = before.collect();
         for (&place, row) in places.iter().zip(turned) {
             // The contribution of a violation is linear in it.
             let mut parts = vec![row.right];
             for (&factor, &right) in row.factors.iter().zip(&before) {
-                for &violation in &self.violation_rates {
+                for &violation in &self.violating.rates {
                     let slope = algebra.derivative(right, violation);
                     parts.push(algebra.graph.product(&[factor, slope, violation]));
                 }
             }
-            self.violating.1[place] = algebra.graph.sum(&parts);
+            self.violated_right[place] = algebra.graph.sum(&parts);
             self.open.right[place] = row.right;
             let start = place * self.open.unknowns.len();
             self.open.matrix.splice(
@@ -186,13 +187,7 @@ impl Elimination {
         algebra: &mut Algebra,
         mechanism: &Mechanism,
     ) -> Outcome<GeneralizedVelocities> {
-        let Self {
-            rates,
-            open,
-            violating,
-            violation_rates,
-            carried_rates,
-        } = self;
+        let open = self.open;
         let mut values = open.solved_for(&mut algebra.graph, &open.right);
         let in_quaternion: Vec<usize> = quaternions(mechanism).flatten().collect();
         for (value, &q) in values.iter_mut().zip(&open.coordinates) {
@@ -204,16 +199,15 @@ impl Elimination {
             };
             *value = algebra.graph.name(&name, *value);
         }
-        let rates = open.put_in(algebra, &values, &rates)?;
+        let rates = open.put_in(algebra, &values, &self.rates)?;
         let solved = values;
-        let values = open.solved_for(&mut algebra.graph, &violating.1);
-        let coordinate_rates = open.put_in(algebra, &values, &violating.0)?;
+        let values = open.solved_for(&mut algebra.graph, &self.violated_right);
+        let violating = self.violating;
         Ok(GeneralizedVelocities {
             rates,
             violating: Violation {
-                rates: violation_rates,
-                coordinate_rates,
-                carried_rates,
+                coordinate_rates: open.put_in(algebra, &values, &violating.coordinate_rates)?,
+                ..violating
             },
             solved_numerically: if open.by_division {
                 Vec::new()

@@ -23,18 +23,11 @@ struct Work {
 }
 
 impl Work {
-    const fn new(force: Expr, velocity: Expr) -> Self {
+    fn new(force: Expr, velocity: Expr, is_conservative: bool) -> Self {
         Self {
             force,
             velocity,
-            is_conservative: false,
-        }
-    }
-
-    const fn conservative(self) -> Self {
-        Self {
-            is_conservative: true,
-            ..self
+            is_conservative,
         }
     }
 }
@@ -345,7 +338,7 @@ impl Context<'_> {
                 let force = self.part(algebra, 1, force)?;
                 let velocity = self.setting.lower(&mut algebra.graph, velocity)?;
                 Ok(AppliedLoad {
-                    work: vec![Work::new(force, velocity)],
+                    work: vec![Work::new(force, velocity, false)],
                     acts: Acts::Scalar(force),
                     ..AppliedLoad::default()
                 })
@@ -365,7 +358,7 @@ impl Context<'_> {
             let (frames, down_here) = (&self.kinematics.frames, FrameVector::new(GROUND, down));
             let direction = frames.express(&mut algebra.graph, down_here, v.frame);
             let force = algebra.graph.scale3(weight, direction);
-            work.extend(pairs(force, v.v).into_iter().map(Work::conservative));
+            work.extend(pairs(force, v.v, true));
             let position = (self.kinematics).position(&mut algebra.graph, body.centre);
             let fallen = algebra.graph.dot(down, position);
             let energy = algebra.graph.mul(weight, fallen);
@@ -395,8 +388,7 @@ impl Context<'_> {
             let extension = algebra.graph.sub(length, relaxed);
             let tension = algebra.graph.mul(k, extension);
             tensions.push(tension);
-            let elastic = resisting(algebra, tension, &rate);
-            work.extend(elastic.into_iter().map(Work::conservative));
+            work.extend(resisting(algebra, tension, &rate, true));
             let square = algebra.graph.square(extension);
             let twice = algebra.graph.mul(k, square);
             potential = Some(algebra.graph.scale(&Rational::new(1, 2), twice));
@@ -408,7 +400,7 @@ impl Context<'_> {
             let speed = power(&mut algebra.graph, rate.iter());
             let tension = algebra.graph.mul(c, speed);
             tensions.push(tension);
-            work.extend(resisting(algebra, tension, &rate));
+            work.extend(resisting(algebra, tension, &rate, false));
         }
         Ok(AppliedLoad {
             work,
@@ -424,8 +416,7 @@ impl Context<'_> {
             Connection::Along(displacement) => {
                 let displacement = self.setting.lower(&mut algebra.graph, displacement)?;
                 let rate = self.setting.rate(algebra, displacement);
-                let unit = Work::new(Graph::ONE, rate);
-                Ok((displacement, vec![unit]))
+                Ok((displacement, vec![Work::new(Graph::ONE, rate, false)]))
             }
             &Connection::Points(a, b) => {
                 let graph = &mut algebra.graph;
@@ -444,7 +435,7 @@ impl Context<'_> {
                 let v = graph.sub3(v_b, v_a);
                 let inverse = graph.pow(length, -1);
                 let direction = graph.scale3(inverse, d.v);
-                Ok((length, pairs(direction, v)))
+                Ok((length, pairs(direction, v, false)))
             }
         }
     }
@@ -455,17 +446,15 @@ fn power<'a>(graph: &mut Graph, work: impl Iterator<Item = &'a Work>) -> Expr {
     graph.sum(&parts)
 }
 
-fn pairs(force: Vec3, velocity: Vec3) -> Vec<Work> {
-    force
-        .into_iter()
-        .zip(velocity)
-        .map(|(force, velocity)| Work::new(force, velocity))
+fn pairs(force: Vec3, velocity: Vec3, is_conservative: bool) -> Vec<Work> {
+    let both = force.into_iter().zip(velocity);
+    both.map(|(force, velocity)| Work::new(force, velocity, is_conservative))
         .collect()
 }
 
 /// The load of a force or a torque, with a velocity in the components of the same frame.
 fn working(algebra: &mut Algebra, force: FrameVector, velocity: Vec3) -> AppliedLoad {
-    let mut work = pairs(force.v, velocity);
+    let mut work = pairs(force.v, velocity, false);
     work.retain(|w| w.force != Graph::ZERO);
     for w in &mut work {
         w.velocity = algebra.shortest(w.velocity);
@@ -478,10 +467,16 @@ fn working(algebra: &mut Algebra, force: FrameVector, velocity: Vec3) -> Applied
 }
 
 /// A tension works against the growth of the length.
-fn resisting(algebra: &mut Algebra, tension: Expr, extension: &[Work]) -> Vec<Work> {
-    let pull = algebra.graph.neg(tension);
-    extension
-        .iter()
-        .map(|w| Work::new(algebra.graph.mul(pull, w.force), w.velocity))
+fn resisting(
+    algebra: &mut Algebra,
+    tension: Expr,
+    extension: &[Work],
+    is_conservative: bool,
+) -> Vec<Work> {
+    let graph = &mut algebra.graph;
+    let pull = graph.neg(tension);
+    let along = extension.iter();
+    along
+        .map(|w| Work::new(graph.mul(pull, w.force), w.velocity, is_conservative))
         .collect()
 }

@@ -4,6 +4,7 @@
 use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
+use super::algebra::replacing;
 use super::expressions::Setting;
 use super::finding::{Item, Outcome, defined};
 use super::motions::motions;
@@ -80,10 +81,8 @@ impl Derivation {
 
     /// Substitutes ω̇ for its symbols.
     fn actual_accelerations(&mut self) -> Substitution {
-        let symbols = self.symbols.accelerations.iter();
-        let values = self.motion.accelerations.iter();
-        let pairs: Vec<(Expr, Expr)> = symbols.copied().zip(values.copied()).collect();
-        Substitution::of_parts(&self.algebra.graph, &pairs)
+        let symbols = &self.symbols.accelerations;
+        replacing(&self.algebra.graph, symbols, &self.motion.accelerations)
     }
 
     /// Derivatives of the outputs with respect to each list of variables, row by row:

@@ -13,7 +13,7 @@ use appell_spec::expr::Response;
 use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
-use super::algebra::{Algebra, scalar_product};
+use super::algebra::{Algebra, replacing, scalar_product};
 use super::creep::per_mass;
 use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::named_parts;
@@ -171,7 +171,7 @@ impl FixedPoint {
         if open.is_empty() {
             return Ok(values);
         }
-        let mut known = Substitution::of_parts(graph, &[]);
+        let mut known = Substitution::default();
         for (i, &unknown) in self.unknowns.iter().enumerate() {
             if !open.contains(&i) {
                 known.replace(graph, unknown, values[i]);
@@ -206,8 +206,7 @@ impl FixedPoint {
         };
         let mut at: Vec<Expr> = start;
         for step in 1..=steps {
-            let here: Vec<(Expr, Expr)> = unknowns.iter().copied().zip(at.clone()).collect();
-            let mut here = Substitution::of_parts(&algebra.graph, &here);
+            let mut here = replacing(&algebra.graph, &unknowns, &at);
             let right = algebra.apply(&mut here, &residual)?;
             let matrix = algebra.apply(&mut here, &slopes)?;
             let changes = quotient(algebra, matrix, right)?;

@@ -69,8 +69,19 @@ pub fn compare_while(
     // A separate graph: the emitted equations do not depend on the comparison.
     let graph = derivation.algebra.graph.clone();
     let mut algebra = Algebra::new(graph, mechanism, symbols);
-    let claims = claims(&mut algebra, mechanism, derivation, is_time)?;
-    Ok(decide(&mut algebra, mechanism, derivation, claims, is_time))
+    let mut judge = Judge::new(mechanism, derivation);
+    let mut comparisons = Vec::new();
+    for claim in claims(&mut algebra, mechanism, derivation, is_time)? {
+        comparisons.push(Comparison {
+            against: claim.against,
+            quantity: claim.quantity,
+            agreement: judge.agreement(&mut algebra, &claim.pairs, is_time),
+        });
+    }
+    Ok(FormulationComparison {
+        comparisons,
+        error_bound: judge.error_bound,
+    })
 }
 
 /// All quantities to be compared.
@@ -287,29 +298,6 @@ fn generalized_accelerations(
         algebra.check_size()?;
     }
     Ok(all)
-}
-
-/// Proves identities where possible and compares the other quantities at points.
-fn decide(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    derivation: &Derivation,
-    claims: Vec<Claim>,
-    is_time: &dyn Fn() -> bool,
-) -> FormulationComparison {
-    let mut judge = Judge::new(mechanism, derivation);
-    let mut comparisons = Vec::with_capacity(claims.len());
-    for claim in claims {
-        comparisons.push(Comparison {
-            against: claim.against,
-            quantity: claim.quantity,
-            agreement: judge.agreement(algebra, &claim.pairs, is_time),
-        });
-    }
-    FormulationComparison {
-        comparisons,
-        error_bound: judge.error_bound,
-    }
 }
 
 /// Decides whether expressions agree, and sums the error probabilities of its proofs.

@@ -177,14 +177,8 @@ impl Builder<'_> {
 
     /// Rates determined by the known pseudo-velocities.
     fn rates_that_follow(&mut self) -> Result<(), SteadyError> {
-        for (k, symbol) in self
-            .derivation
-            .symbols
-            .rates
-            .clone()
-            .into_iter()
-            .enumerate()
-        {
+        let rates = self.derivation.symbols.rates.clone();
+        for (k, symbol) in rates.into_iter().enumerate() {
             let rate = self.value(self.derivation.coordinate_rates[k])?;
             let open = self.open_speeds();
             if self.motion.gives(symbol) || !self.depends(rate, &open).is_empty() {
@@ -262,14 +256,8 @@ impl Builder<'_> {
 
     /// Checks that given rates agree with the pseudo-velocities.
     fn check_given_rates(&mut self) -> Result<(), SteadyError> {
-        for (k, symbol) in self
-            .derivation
-            .symbols
-            .rates
-            .clone()
-            .into_iter()
-            .enumerate()
-        {
+        let rates = self.derivation.symbols.rates.clone();
+        for (k, symbol) in rates.into_iter().enumerate() {
             if !self.given_rates.contains(&symbol) {
                 continue;
             }

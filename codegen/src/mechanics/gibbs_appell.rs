@@ -303,6 +303,20 @@ pub struct GibbsForm {
     pub bias: Vec<Expr>,
 }
 
+/// `M ω̇ + b − Π` of one equation, with a row of M.
+pub(super) fn demand(
+    graph: &mut Graph,
+    mass: &[Expr],
+    accelerations: &[Expr],
+    bias: Expr,
+    force: Expr,
+) -> Expr {
+    let inertial = mass.iter().zip(accelerations);
+    let mut terms: Vec<Expr> = inertial.map(|(&m, &w_dot)| graph.mul(m, w_dot)).collect();
+    terms.extend([bias, graph.neg(force)]);
+    graph.sum(&terms)
+}
+
 impl GibbsForm {
     /// Expands the named `parts` in the bias if terms cancel, in all entries; names are restored where they are
     /// shorter.

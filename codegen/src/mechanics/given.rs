@@ -9,7 +9,7 @@ use appell_spec::Code;
 use super::algebra::Algebra;
 use super::expressions::Setting;
 use super::finding::{Finding, Item, Outcome, unless_any};
-use super::gibbs_appell::GibbsForm;
+use super::gibbs_appell::{GibbsForm, demand};
 use crate::symbolic::{Expr, Graph};
 
 /// The prescribed rates, and the equations that they replace.
@@ -78,10 +78,8 @@ impl Given {
     /// Required generalised forces of the drives in a motion with these rates.
     pub fn drives(&self, graph: &mut Graph, accelerations: &[Expr]) -> Vec<(usize, Expr)> {
         let drives = self.speeds.iter().map(|given| {
-            let inertial = given.mass.iter().zip(accelerations);
-            let mut terms: Vec<Expr> = inertial.map(|(&m, &w_dot)| graph.mul(m, w_dot)).collect();
-            terms.extend([given.bias, graph.neg(given.force)]);
-            (given.speed, graph.sum(&terms))
+            let force = demand(graph, &given.mass, accelerations, given.bias, given.force);
+            (given.speed, force)
         });
         drives.collect()
     }

@@ -125,13 +125,9 @@ fn resolved_elsewhere(
     rows: &[Row],
     constraint: ConstraintId,
 ) -> Option<Vec<(usize, Row)>> {
-    match mechanism.constraints[constraint].kind {
-        ConstraintKind::Rolling { normal: None, .. } => {}
-        // A single row has no choice of axes; a surface determines them.
-        ConstraintKind::Rolling { .. }
-        | ConstraintKind::Velocity { .. }
-        | ConstraintKind::FixedVelocity { .. }
-        | ConstraintKind::Position { .. } => return None,
+    // A single row has no choice of axes; a surface determines them.
+    if !has_free_axes(mechanism, constraint) {
+        return None;
     }
     let mut frames_but_ground = mechanism.frames.ids().skip(1);
     frames_but_ground.find_map(|frame| {
@@ -211,6 +207,12 @@ fn resolved_in(
     Some(resolved)
 }
 
+/// Whether the rows of a constraint may be resolved in any axes: those of a contact without a given normal.
+fn has_free_axes(mechanism: &Mechanism, constraint: ConstraintId) -> bool {
+    let kind = &mechanism.constraints[constraint].kind;
+    matches!(kind, ConstraintKind::Rolling { normal: None, .. })
+}
+
 fn contradiction(row: &Row) -> Finding {
     Finding {
         code: Code::DependentConstraints,
@@ -221,20 +223,12 @@ fn contradiction(row: &Row) -> Finding {
 }
 
 fn singular(mechanism: &Mechanism, row: &Row) -> Finding {
-    let help = match mechanism.constraints[row.constraint].kind {
-        ConstraintKind::Rolling { normal: None, .. } => {
-            "on a surface that is not normal to an axis of the ground, name a frame that follows it and \
-             its normal axis, such as `in = \"slope\", normal = \"z\"`; otherwise remove the \
-             constraint, or declare ranges in which it is always redundant"
-        }
-        ConstraintKind::Rolling {
-            normal: Some(_), ..
-        }
-        | ConstraintKind::Velocity { .. }
-        | ConstraintKind::FixedVelocity { .. }
-        | ConstraintKind::Position { .. } => {
-            "remove it, or declare ranges in which it is always redundant"
-        }
+    let help = if has_free_axes(mechanism, row.constraint) {
+        "on a surface that is not normal to an axis of the ground, name a frame that follows it and \
+         its normal axis, such as `in = \"slope\", normal = \"z\"`; otherwise remove the \
+         constraint, or declare ranges in which it is always redundant"
+    } else {
+        "remove it, or declare ranges in which it is always redundant"
     };
     Finding {
         code: Code::RedundantConstraint,

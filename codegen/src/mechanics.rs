@@ -115,7 +115,7 @@ use given::Given;
 use initial::InitialState;
 use kinematics::{Effort, Kinematics, RollingContact};
 use loads::AppliedLoad;
-use motion::{Motion, Way};
+use motion::Motion;
 use positions::Positions;
 use recursion::Recursion;
 use row::Row;
@@ -229,16 +229,7 @@ pub fn derive_in_letters(mechanism: &Mechanism) -> Outcome<Derivation> {
 fn equations(mechanism: &Mechanism, in_letters: bool) -> Outcome<Derivation> {
     let (mut derivation, all_loads) = without_reactions(mechanism, in_letters)?;
     derivation.let_all_loads_act(mechanism, all_loads)?;
-    if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
-        derivation.given.refuse_beside("contacts that creep")?;
-        let algebra = &mut derivation.algebra;
-        let (gibbs, forces) = (creeping.gibbs, creeping.forces);
-        derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], Way::Shortest)?;
-        derivation.recursion = None;
-        let rates = &creeping.coordinate_rates;
-        derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, rates);
-        (derivation.gibbs, derivation.forces) = (gibbs, forces);
-    }
+    creep::let_contacts_creep(&mut derivation, mechanism)?;
     derivation.responses_in_outputs = derivation.named_in_outputs(mechanism)?;
     Ok(derivation)
 }

@@ -28,7 +28,8 @@ use super::finding::{Finding, Item, Outcome};
 use super::gibbs_appell::{GibbsForm, body_motions, gibbs_form};
 use super::kinematics::{Effort, Kinematics};
 use super::loads::{applied_loads, generalized_forces, settle};
-use super::motion;
+use super::motion::{self, Way};
+use super::named_rates;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Rational, Substitution};
 
@@ -43,24 +44,11 @@ struct Creeping<'m> {
     contact: Contact,
 }
 
-/// The motion with its first-order changes due to creep.
-pub struct CreepingMotion {
-    /// M and b.
-    pub gibbs: GibbsForm,
-    /// Π.
-    pub forces: Vec<Expr>,
-    /// q̇.
-    pub coordinate_rates: Vec<Expr>,
-}
-
-/// The motion with creep in all contacts that have it; `None` if there are none.
-pub fn creeping_motion(
-    derivation: &mut Derivation,
-    mechanism: &Mechanism,
-) -> Outcome<Option<CreepingMotion>> {
+/// Applies the first-order changes due to creep in all contacts that have it to q̇, b, Π and ω̇.
+pub fn let_contacts_creep(derivation: &mut Derivation, mechanism: &Mechanism) -> Outcome<()> {
     let creeping = creeping(derivation, mechanism)?;
     if creeping.is_empty() {
-        return Ok(None);
+        return Ok(());
     }
     let slides = sliding(derivation, mechanism, &creeping)?;
     let violated = derivation.velocities.violating.clone();
@@ -126,14 +114,14 @@ pub fn creeping_motion(
         let change = graph.sum(&change);
         *force = graph.add(*force, change);
     }
-    Ok(Some(CreepingMotion {
-        gibbs: GibbsForm {
-            bias,
-            ..derivation.gibbs.clone()
-        },
-        forces,
-        coordinate_rates,
-    }))
+    derivation.given.refuse_beside("contacts that creep")?;
+    derivation.gibbs.bias = bias;
+    let (gibbs, way) = (&derivation.gibbs, Way::Shortest);
+    derivation.motion = motion::solve(algebra, mechanism, gibbs, &forces, &[], way)?;
+    derivation.forces = forces;
+    derivation.recursion = None;
+    derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, &coordinate_rates);
+    Ok(())
 }
 
 /// The rate at which each row of a creeping contact is violated: its symbol and its value.

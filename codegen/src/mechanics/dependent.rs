@@ -74,15 +74,13 @@ impl DependentSpeeds {
         };
         let (accelerations, multipliers) = (symbols_for("ddot"), symbols_for("multiplier"));
         let mut dependent = Self {
-            driving: Vec::new(),
-            change: Vec::new(),
             values: velocities.solved.clone(),
             partial: vec![Vec::new(); system.unknowns.len()],
-            bias: Vec::new(),
             rates: rates.clone(),
             accelerations,
             multipliers,
             system,
+            ..Self::default()
         };
         let moving = Setting::new(mechanism, symbols, &rates);
         let residual = dependent.residual(&mut algebra.graph);

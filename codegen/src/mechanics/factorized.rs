@@ -10,7 +10,7 @@ use super::symbols::speed_name;
 use crate::symbolic::{Expr, Graph};
 
 /// A factorised block.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct FactorizedBlock {
     /// Speeds in the order of elimination.
     pub speeds: Vec<usize>,
@@ -42,11 +42,7 @@ impl FactorizedBlock {
             }
         }
         let mut open = speeds.to_vec();
-        let mut block = Self {
-            speeds: Vec::new(),
-            lower: Vec::new(),
-            pivots: Vec::new(),
-        };
+        let mut block = Self::default();
         // Columns of L in the order of elimination, indexed by speed.
         let mut columns: Vec<Vec<Expr>> = Vec::new();
         while !open.is_empty() {

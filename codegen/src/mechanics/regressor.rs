@@ -210,6 +210,7 @@ impl Linear {
 }
 
 /// Columns of Y, with their parameters.
+#[derive(Default)]
 struct Columns {
     parameters: Vec<Linear>,
     without_effect: Vec<String>,
@@ -256,13 +257,7 @@ impl Derivation {
             .collect();
         let mut central = Substitution::by_zero(&self.algebra.graph, &centres);
         let about_points = self.algebra.apply(&mut central, &demand)?;
-        let mut columns = Columns {
-            parameters: Vec::new(),
-            without_effect: Vec::new(),
-            entries: Vec::new(),
-            values: Vec::new(),
-            rest: Vec::new(),
-        };
+        let mut columns = Columns::default();
         for body in bodies {
             let name = &mechanism.bodies[body.body].name;
             let [mass, moments, inertia] = self.inertial_values(mechanism, body)?;

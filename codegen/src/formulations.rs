@@ -53,6 +53,16 @@ struct Claim {
     pairs: Vec<Pair>,
 }
 
+impl Claim {
+    fn new(against: Against, quantity: &'static str, pairs: Vec<Pair>) -> Self {
+        Self {
+            against,
+            quantity,
+            pairs,
+        }
+    }
+}
+
 /// Compares a derivation with the other formulations of the same mechanism. Fails if their equations exceed the limit
 /// on the number of expressions.
 pub fn compare(mechanism: &Mechanism, derivation: &Derivation) -> Outcome<FormulationComparison> {
@@ -112,17 +122,10 @@ fn claims(
         derived: row.value,
         other: Graph::ZERO,
     });
+    let defined = by_speed(&symbols.speeds, &definitions);
     let mut claims = vec![
-        Claim {
-            against: Against::Spec,
-            quantity: "pseudo-velocities",
-            pairs: by_speed(&symbols.speeds, &definitions),
-        },
-        Claim {
-            against: Against::Spec,
-            quantity: "constraints",
-            pairs: violated.collect(),
-        },
+        Claim::new(Against::Spec, "pseudo-velocities", defined),
+        Claim::new(Against::Spec, "constraints", violated.collect()),
     ];
     if !is_time() {
         claims.extend(not_reached(Against::Kane, &BY_KANE));
@@ -145,11 +148,7 @@ fn claims(
         by_speed(&motion.accelerations, &kane.accelerations),
     ];
     let by_kane = BY_KANE.into_iter().zip(by_kane);
-    claims.extend(by_kane.map(|(quantity, pairs)| Claim {
-        against: Against::Kane,
-        quantity,
-        pairs,
-    }));
+    claims.extend(by_kane.map(|(quantity, pairs)| Claim::new(Against::Kane, quantity, pairs)));
     if !is_time() {
         claims.extend(not_reached(Against::Lagrange, &BY_LAGRANGE));
         return Ok(claims);
@@ -160,11 +159,8 @@ fn claims(
     let coordinates = mechanism.coordinates.iter();
     let coordinates: Vec<&str> = coordinates.map(|q| q.label.name.as_str()).collect();
     let accelerations = generalized_accelerations(algebra, &allowed, &motion.accelerations)?;
-    claims.push(Claim {
-        against: Against::Lagrange,
-        quantity: BY_LAGRANGE[0],
-        pairs: named(&coordinates, &accelerations, &lagrange.accelerations),
-    });
+    let pairs = named(&coordinates, &accelerations, &lagrange.accelerations);
+    claims.push(Claim::new(Against::Lagrange, BY_LAGRANGE[0], pairs));
     claims.extend(reaction_claims(
         algebra,
         derivation,
@@ -179,11 +175,8 @@ fn claims(
 
 /// Quantities not compared because the time limit was reached.
 fn not_reached(against: Against, quantities: &[&'static str]) -> impl Iterator<Item = Claim> {
-    quantities.iter().map(move |&quantity| Claim {
-        against,
-        quantity,
-        pairs: Vec::new(),
-    })
+    let quantities = quantities.iter();
+    quantities.map(move |&quantity| Claim::new(against, quantity, Vec::new()))
 }
 
 /// Constraint forces against Lagrange's multipliers, and their sum against Newton's law.
@@ -238,11 +231,7 @@ fn reaction_claims(
             }
         }
     }
-    let mut claims = vec![Claim {
-        against: Against::Lagrange,
-        quantity: BY_LAGRANGE[1],
-        pairs,
-    }];
+    let mut claims = vec![Claim::new(Against::Lagrange, BY_LAGRANGE[1], pairs)];
     // The actuators of prescribed motions also have reactions.
     let is_driven = !derivation.given.is_empty();
     if !rows.is_empty() && !is_driven && rests_on_contacts(derivation, mechanism) {
@@ -250,11 +239,8 @@ fn reaction_claims(
         for &force in &forces {
             sum = algebra.graph.add3(sum, force);
         }
-        claims.push(Claim {
-            against: Against::Newton,
-            quantity: "sum of the constraint forces",
-            pairs: named(&axes, &sum, &total),
-        });
+        let (quantity, pairs) = ("sum of the constraint forces", named(&axes, &sum, &total));
+        claims.push(Claim::new(Against::Newton, quantity, pairs));
     }
     Ok(claims)
 }

@@ -9,6 +9,7 @@ use super::finding::{Finding, Item, Outcome, defined, listed, unless_any};
 use super::kinematics::Kinematics;
 use super::motions::told;
 use super::rank::{LinearRow, Standing, is_finite, standings};
+use super::redundancy::omission;
 use crate::symbolic::{Expr, Graph, Intervals};
 
 /// The position constraints `f(q, t) = 0` of a mechanism.
@@ -54,9 +55,9 @@ impl Positions {
                 .map(|&q| algebra.derivative(residual, q))
                 .collect();
             if let Some(others) = positions.repeated(algebra, intervals, residual, &row) {
-                positions
-                    .warnings
-                    .push(redundant(&constraint.name, index, &others));
+                let reason = format!("follows from {}", listed(others));
+                let warning = omission(&constraint.name, index, &reason);
+                positions.warnings.push(warning);
                 continue;
             }
             let named = dependent.map(CoordinateId::index);
@@ -81,7 +82,7 @@ impl Positions {
         intervals: &mut Intervals,
         residual: Expr,
         slopes: &[Expr],
-    ) -> Option<Vec<String>> {
+    ) -> Option<Vec<&str>> {
         let row = |(coefficients, &rest): (&[Expr], &Expr)| LinearRow {
             coefficients: coefficients.to_vec(),
             rest,
@@ -97,11 +98,8 @@ impl Positions {
         if sum.is_empty() || !sum.iter().all(finite) {
             return None;
         }
-        Some(
-            sum.iter()
-                .map(|&(place, _)| self.names[place].clone())
-                .collect(),
-        )
+        let names = sum.iter().map(|&(place, _)| self.names[place].as_str());
+        Some(names.collect())
     }
 
     /// The coordinate named in the spec, or the free one with the safest coefficient.
@@ -122,18 +120,6 @@ impl Positions {
         let candidates: Vec<usize> = (0..row.len()).filter(free).collect();
         let safe = |&&q: &&usize| intervals.cannot_vanish(&algebra.graph, row[q]);
         candidates.iter().find(safe).or(candidates.first()).copied()
-    }
-}
-
-fn redundant(name: &str, index: ConstraintId, others: &[String]) -> Finding {
-    Finding {
-        code: Code::RedundantConstraint,
-        message: format!(
-            "`{name}` follows from {} and is left out: the motion is the same without it",
-            listed(others.iter().map(String::as_str))
-        ),
-        item: Item::Constraint(index),
-        help: "remove it".to_owned(),
     }
 }
 

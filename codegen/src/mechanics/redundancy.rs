@@ -263,13 +263,15 @@ fn redundancy(
         let names = others.into_iter().map(|other| rows[other].name.as_str());
         format!("follows from {}", listed(names))
     };
-    Some(Finding {
+    Some(omission(&rows[spare].name, rows[spare].constraint, &reason))
+}
+
+/// The warning for an omitted row or constraint that `reason`, such as `follows from ...`.
+pub(super) fn omission(name: &str, constraint: ConstraintId, reason: &str) -> Finding {
+    Finding {
         code: Code::RedundantConstraint,
-        message: format!(
-            "`{}` {reason} and is left out: the motion is the same without it",
-            rows[spare].name
-        ),
-        item: Item::Constraint(rows[spare].constraint),
+        message: format!("`{name}` {reason} and is left out: the motion is the same without it"),
+        item: Item::Constraint(constraint),
         help: "remove it".to_owned(),
-    })
+    }
 }

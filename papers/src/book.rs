@@ -5,25 +5,40 @@
 //! part (`figure_7.toml`) stand next to its computation (`figure_7.rs`).
 
 mod claim;
-mod drawing;
 mod equations;
 pub mod euc;
 mod page;
-mod part;
 mod steady_motions;
 pub mod steering;
 
 use appell::Error;
 use appell_analysis::control::operating_point::MotionEquations;
 use appell_models::Shipped;
+use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::model::ModelInfo;
+
+use claim::Part;
 
 pub use claim::{Claim, Picture, Reproduction, Section, Tally};
 pub use page::page;
-use part::Part;
 
 /// A result, or the reason why a computation failed.
 pub(crate) type Result<T> = std::result::Result<T, Error>;
+
+/// Parts of a book, made from what they share after some steps that are done; `making` is called with the current part
+/// and the progress.
+fn made<C: Copy>(
+    parts: &[(&str, fn(C) -> Result<Section>)],
+    shared: C,
+    done: usize,
+    mut making: impl FnMut(&str, usize, usize),
+) -> Result<Vec<Section>> {
+    let sections = parts.iter().enumerate().map(|(number, (name, make))| {
+        making(name, done + number, done + parts.len());
+        make(shared)
+    });
+    sections.collect()
+}
 
 /// A shipped mechanism.
 pub(crate) fn shipped(name: &str) -> Result<&'static Shipped> {
@@ -74,4 +89,18 @@ pub(crate) fn edited<'a>(
         }
         Ok(text.replacen(before, with, 1))
     })
+}
+
+/// A line with a name in the legend.
+pub(crate) fn line(label: &str, x: Vec<f64>, y: Vec<f64>) -> Series {
+    let label = label.to_owned();
+    Series { label, x, y }
+}
+
+/// Paths in a plane, in m, with one scale.
+pub(crate) fn paths(title: &str, x_label: &str, series: Vec<Series>) -> Figure {
+    Figure {
+        equal_axes: true,
+        ..Figure::new(title, x_label, vec![Panel::new("m", series)])
+    }
 }

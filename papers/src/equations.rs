@@ -1,9 +1,18 @@
 //! Numbered equations of the papers that are formulas, each compared with the derivation as a
 //! function, not at points.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 
 use crate::paper::Subject;
+
+/// The items of a file, which is one list of tables.
+pub(crate) fn items<T: DeserializeOwned>(file: &str) -> Result<Vec<T>, toml::de::Error> {
+    let lists: BTreeMap<String, Vec<T>> = toml::from_str(file)?;
+    Ok(lists.into_values().flatten().collect())
+}
 
 /// A numbered equation.
 #[derive(Debug, Deserialize)]
@@ -53,15 +62,6 @@ impl Formulas {
 }
 
 impl Equation {
-    /// The equations of a file.
-    pub(crate) fn read(file: &str) -> Vec<Self> {
-        #[derive(Deserialize)]
-        struct File {
-            equation: Vec<Equation>,
-        }
-        toml::from_str::<File>(file).unwrap().equation
-    }
-
     /// The printed form: each formula once.
     pub fn text(&self) -> String {
         let claims = self.claims.iter().map(|claim| claim.formulas.text());

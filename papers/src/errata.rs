@@ -4,17 +4,12 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
+use crate::equations::items;
 use crate::paper::Subject;
 
 /// All errata, in the order of the papers.
-pub static ERRATA: LazyLock<Vec<Erratum>> = LazyLock::new(|| {
-    #[derive(Deserialize)]
-    struct File {
-        erratum: Vec<Erratum>,
-    }
-    let file: File = toml::from_str(include_str!("errata.toml")).unwrap();
-    file.erratum
-});
+pub static ERRATA: LazyLock<Vec<Erratum>> =
+    LazyLock::new(|| items(include_str!("errata.toml")).unwrap());
 
 /// An erratum: a difference between a paper and the correct equation.
 #[derive(Debug, Deserialize)]

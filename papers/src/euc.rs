@@ -7,8 +7,8 @@
 
 use std::sync::LazyLock;
 
-use crate::equations::Equation;
+use crate::equations::{Equation, items};
 
 /// The equations of motion and all torques.
 pub static EQUATIONS: LazyLock<Vec<Equation>> =
-    LazyLock::new(|| Equation::read(include_str!("euc.toml")));
+    LazyLock::new(|| items(include_str!("euc.toml")).unwrap());

@@ -6,8 +6,7 @@
 //! | `formula.rs` | formulas as papers print them |
 //! | `paper.rs` | the derived equations under the names of the papers |
 //! | `equations.rs` | typed equations, compared with the derived ones |
-//! | `steering.rs`, `steering.toml` | the equations of *Steering Control of an Autonomous Unicycle* |
-//! | `gains.rs` | its tables II and III |
+//! | `steering.rs`, `steering.toml` | the equations of *Steering Control of an Autonomous Unicycle*, its tables II and III |
 //! | `euc.rs`, `euc.toml` | the equations of *Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle* |
 //! | `errata.rs`, `errata.toml` | printed and correct formulas |
 //! | `book/` | both papers recomputed, compared with general commands |
@@ -24,6 +23,5 @@ mod equations;
 pub mod errata;
 pub mod euc;
 pub mod formula;
-mod gains;
 pub mod paper;
 pub mod steering;

@@ -4,8 +4,6 @@
 //! independent of its format and of the expression graph; [`text()`], [`latex()`] and [`html()`]
 //! set it. [`linear`] is the page of the linear equations about a steady motion.
 
-mod about;
-mod angles;
 mod arrange;
 mod collect;
 mod content;
@@ -13,28 +11,24 @@ mod display;
 mod html;
 mod latex;
 mod lexicon;
-mod renumber;
 mod sections;
 mod sources;
 mod text;
-mod text_box;
-mod units;
 mod writer;
 
+use appell_codegen::linearisation::Linearisation;
+use appell_codegen::mechanics::{Derivation, derive_in_letters, finding};
 use appell_spec::mechanism::Mechanism;
 
-pub use about::About;
+use writer::Writer;
+
+pub use appell_codegen::symbolic::print::{Letter, Math};
 pub use content::{Block, Chain, Page, Row, Section, Span, Stage, Table};
+pub use display::{About, Equation};
 pub use html::{EQUATIONS, clickable, html};
 pub use latex::{formulas, latex};
 pub use sources::locate;
 pub use text::text;
-
-use appell_codegen::linearisation::Linearisation;
-use appell_codegen::mechanics::{Derivation, derive_in_letters, finding};
-pub use appell_codegen::symbolic::print::{Letter, Math};
-pub use display::Equation;
-use writer::Writer;
 
 /// Writes the derivation of a mechanism, up to a stage.
 ///
@@ -90,10 +84,79 @@ pub fn linear(mechanism: &Mechanism, derivation: &mut Derivation, linear: &Linea
 }
 
 fn written(mechanism: &Mechanism, writer: &mut Writer<'_>, mut sections: Vec<Section>) -> Page {
-    renumber::by_definition(&mut sections, writer.bases());
+    by_definition(&mut sections, writer.bases());
     Page {
         title: mechanism.title.clone(),
         source: mechanism.source.clone(),
         sections,
+    }
+}
+
+/// Numbers the letters with one of these `bases` in the order of their definitions; letters used without a
+/// definition follow.
+fn by_definition(sections: &mut [Section], bases: [&str; 2]) {
+    for base in bases {
+        let mut order: Vec<String> = Vec::new();
+        for definitions_only in [true, false] {
+            each_letter(sections, definitions_only, &mut |letter| {
+                if let Some(number) = number_of(letter, base)
+                    && !order.contains(number)
+                {
+                    order.push(number.clone());
+                }
+            });
+        }
+        each_letter(sections, false, &mut |letter| {
+            if let Some(number) = number_of(letter, base)
+                && let Some(place) = order.iter().position(|known| known == number)
+            {
+                letter.below[0] = (place + 1).to_string();
+            }
+        });
+    }
+}
+
+fn number_of<'a>(letter: &'a Letter, base: &str) -> Option<&'a String> {
+    let first = letter.below.first()?;
+    let is_number = first.bytes().all(|byte| byte.is_ascii_digit());
+    (letter.base == base && is_number).then_some(first)
+}
+
+/// All letters of the sections, or only those that equations define: on the left, or anywhere in an implicit
+/// equation.
+fn each_letter(
+    sections: &mut [Section],
+    definitions_only: bool,
+    change: &mut dyn FnMut(&mut Letter),
+) {
+    for block in sections.iter_mut().flat_map(|s| &mut s.blocks) {
+        match block {
+            Block::Equations(equations) => {
+                for Equation { left, right, .. } in equations {
+                    let is_implicit = left.is_integer("0");
+                    left.for_each_letter(change);
+                    if is_implicit || !definitions_only {
+                        right.for_each_letter(change);
+                    }
+                }
+            }
+            Block::Sentence(spans) if !definitions_only => each_in_text(spans, change),
+            Block::Table(table) if !definitions_only => {
+                for row in &mut table.rows {
+                    row.cells
+                        .iter_mut()
+                        .for_each(|cell| each_in_text(cell, change));
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn each_in_text(spans: &mut [Span], change: &mut dyn FnMut(&mut Letter)) {
+    for span in spans {
+        if let Span::Math(math) = span {
+            math.for_each_letter(change);
+        }
     }
 }

@@ -1,19 +1,16 @@
 //! A drawing of a mechanism at its initial state, as SVG, and the data of animations.
 //!
-//! The files are the steps: [`placement`] writes positions of points and frames, [`scene`]
-//! evaluates them, [`solids`] gives bodies a shape, [`view`] chooses the projection, [`shapes`]
-//! makes strokes in space and [`arcs`] those of angles, [`sheet`] lays them out. [`home`] locates names. [`mod@film`] follows a
-//! motion with the same positions and shapes.
+//! The files are the steps: [`scene`] writes positions of points and frames and evaluates them, [`view`] chooses the
+//! projection, [`shapes`] gives bodies a shape and makes strokes in space, [`arcs`] those of angles, [`sheet`] lays them
+//! out. [`home`] locates names. [`mod@film`] follows a motion with the same positions and shapes.
 
 mod arcs;
 pub mod film;
 mod home;
 pub mod link;
-mod placement;
 mod scene;
 mod shapes;
 mod sheet;
-mod solids;
 mod space;
 mod view;
 

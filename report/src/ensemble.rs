@@ -1,18 +1,18 @@
 //! The statistics of a study, as text and as a page with figures.
 
 mod figures;
-mod page;
 mod parts;
-
-pub use figures::{Named, figures};
-pub use page::page;
 
 use std::fmt::Write as _;
 
 use appell_ensemble::rows::Column;
 use appell_ensemble::summary::Summary;
+use maud::{PreEscaped, html};
 
+use crate::page_shell::PageShell;
 use parts::{parts, sentences};
+
+pub use figures::{Named, figures};
 
 /// A study with its statistics.
 #[derive(Debug, Clone, Copy)]
@@ -42,4 +42,26 @@ pub fn text(about: &About<'_>) -> String {
         }
     }
     text
+}
+
+/// Light and dark, as the figures inside.
+const STYLE: &str = include_str!("identification/page.css");
+
+/// The self-contained HTML page.
+pub fn page(about: &About<'_>) -> String {
+    PageShell::new(about.title, STYLE).around(&html! {
+        h1 { (about.title) }
+        @for sentence in sentences(about) {
+            p { (sentence) "." }
+        }
+        @for part in parts(about) {
+            (part.html())
+        }
+        @for figure in figures(about) {
+            h2 { (figure.heading) }
+            (PreEscaped(&figure.svg))
+        }
+        h2 { "The study" }
+        pre { (about.study) }
+    })
 }

@@ -5,28 +5,19 @@
 //! with any colour vision; the figure follows the reader's light or dark scheme.
 
 mod area;
-mod axis;
-mod branches;
-mod histogram;
-mod inputs;
 mod map;
 mod plot;
-mod scatter;
+mod results;
 mod surface;
-mod tornado;
 
 use appell_gap::identify::HALF_WIDTH_95;
 use appell_runtime::model::Quantity;
 use appell_runtime::simulate::Breach;
 use appell_runtime::trajectory::Trajectory;
-use area::{Area, INNER, SAMPLE, entry, scale};
-use axis::Axis;
-pub use histogram::Histogram;
+use area::{Area, Axis, INNER, SAMPLE, entry, scale};
 pub use map::{Curve, Map, Stroke};
-pub use plot::{Layer, Look, Plot};
-pub use scatter::Scatter;
+pub use plot::{Histogram, Layer, Lever, Look, Plot, Scatter, Tornado};
 pub use surface::{Patch, Path, Surface};
-pub use tornado::{Lever, Tornado};
 
 use crate::svg::{Document, path, title};
 
@@ -104,12 +95,20 @@ const COLOURS: usize = 6;
 /// Style of paper, grid, frame, text and lines (`c0` to `c5`), for any drawing that accompanies the figures.
 pub const STYLE: &str = include_str!("figure/style.css");
 
+impl Panel {
+    /// Lines with the unit of the vertical axis.
+    pub fn new(unit: impl Into<String>, series: Vec<Series>) -> Self {
+        let unit = unit.into();
+        Self { unit, series }
+    }
+}
+
 impl Figure {
-    /// Panels over time.
-    pub(crate) fn over_t(title: String, panels: Vec<Panel>) -> Self {
+    /// Panels over a common axis.
+    pub fn new(title: impl Into<String>, x_label: impl Into<String>, panels: Vec<Panel>) -> Self {
         Self {
-            title,
-            x_label: "t [s]".to_owned(),
+            title: title.into(),
+            x_label: x_label.into(),
             panels,
             marks: Vec::new(),
             equal_axes: false,
@@ -128,20 +127,17 @@ impl Figure {
             let column = names
                 .iter()
                 .find_map(|name| trajectory.column_index(name))?;
-            let unit = trajectory.columns()[column].unit.to_string();
-            Some(Panel {
-                unit,
-                series: names.iter().filter_map(series).collect(),
-            })
+            let unit = trajectory.columns()[column].unit.as_ref();
+            Some(Panel::new(unit, names.iter().filter_map(series).collect()))
         };
         let mark = |breach: &Breach| Mark {
             x: breach.t,
             about: breach.describe(trajectory.info()),
         };
-        let title = trajectory.info().title.to_string();
+        let (title, panels) = (trajectory.info().title.as_ref(), panels.iter());
         Self {
             marks: trajectory.breaches.iter().map(mark).collect(),
-            ..Self::over_t(title, panels.iter().filter_map(panel).collect())
+            ..Self::new(title, "t [s]", panels.filter_map(panel).collect())
         }
     }
 
@@ -186,15 +182,13 @@ impl Figure {
         };
         let across = trajectory.column_in_unit(x)?;
         let series = Series::new(y, &across, trajectory.column_in_unit(y)?);
+        let (title, x_label) = (
+            trajectory.info().title.as_ref(),
+            format!("{x} [{}]", unit(x)?),
+        );
         Some(Self {
-            title: trajectory.info().title.to_string(),
-            x_label: format!("{x} [{}]", unit(x)?),
-            panels: vec![Panel {
-                unit: unit(y)?,
-                series: vec![series],
-            }],
-            marks: Vec::new(),
             equal_axes: true,
+            ..Self::new(title, x_label, vec![Panel::new(unit(y)?, vec![series])])
         })
     }
 
@@ -290,10 +284,8 @@ impl Panel {
                 y.map(|value| quantity.to_unit(value)).collect(),
             )
         };
-        Self {
-            unit: quantity.unit.to_string(),
-            series: names.into_iter().zip([0.0, -1.0, 1.0]).map(line).collect(),
-        }
+        let series = names.into_iter().zip([0.0, -1.0, 1.0]).map(line);
+        Self::new(quantity.unit.as_ref(), series.collect())
     }
 
     /// Samples of the lines with their names. The unit stands in the text of the last name, so

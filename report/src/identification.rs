@@ -1,19 +1,15 @@
 //! Results of an identification: text, and a page with a figure.
 
-mod figure;
-mod page;
-
 use std::fmt::Write as _;
 
 use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, Known};
 use appell_recordings::{Channel, DataSet};
+use maud::{PreEscaped, html};
 
+use crate::figure::{Figure, Panel, Series};
+use crate::page_shell::PageShell;
 use crate::recording;
-use crate::tables::Table;
-use crate::text::{horizon, number, short};
-
-pub use figure::figure;
-pub use page::page;
+use crate::text::{Table, horizon, number, short};
 
 /// Smaller coefficients of a direction are not shown.
 const NEGLIGIBLE: f64 = 0.1;
@@ -358,4 +354,83 @@ fn size(error: f64) -> String {
     } else {
         "diverged".to_owned()
     }
+}
+
+/// Light and dark, as the figure inside.
+const STYLE: &str = include_str!("identification/page.css");
+
+/// The self-contained HTML page.
+pub fn page(set: &DataSet, answer: &Answer) -> String {
+    let name = &set.mechanism.name;
+    let title = format!("{name}: parameters");
+    PageShell::new(&title, STYLE).around(&html! {
+        h1 { (name) ": parameters from recordings" }
+        @for warning in warnings(answer) {
+            p { strong { (warning) } }
+        }
+        @for (index, part) in parts(set, answer).iter().enumerate() {
+            (part.html())
+            @if index == 0 && !answer.traces.is_empty() {
+                h2 { "The runs that were held out" }
+                (PreEscaped(figure(set, answer).to_svg()))
+            }
+        }
+        h2 { "The recordings" }
+        pre { (recording::text(set)) }
+    })
+}
+
+/// Number of runs drawn.
+const DRAWN_RUNS: usize = 2;
+
+/// Drifting parameters with their 95 % bands, a panel for each run.
+fn drifting(answer: &Answer) -> impl Iterator<Item = Panel> + '_ {
+    answer.courses.iter().map(|course| {
+        let name = format!("{}, {}", course.quantity.name, course.run);
+        Panel::with_band(
+            [&name, "from", "to"],
+            &course.quantity,
+            &course.times,
+            &course.values,
+            &course.deviations,
+        )
+    })
+}
+
+/// The first held-out runs: for each channel a panel of values and one of errors.
+pub fn figure(set: &DataSet, answer: &Answer) -> Figure {
+    let traces = answer.traces.iter();
+    let mut runs: Vec<&str> = traces.clone().map(|trace| trace.run.as_str()).collect();
+    runs.dedup();
+    runs.truncate(DRAWN_RUNS);
+    let shown = traces.filter(|trace| runs.contains(&trace.run.as_str()));
+    let panels = shown.flat_map(|trace| {
+        let channel = set.channels.iter().find(|c| c.column == trace.column);
+        let in_unit = |value: f64| channel.map_or(value, |channel| channel.unit.from_si(value));
+        let series = |label: String, y: &mut dyn Iterator<Item = f64>| {
+            Series::new(label, &trace.times, y.map(in_unit).collect())
+        };
+        let values = |label: String, y: &[f64]| series(label, &mut y.iter().copied());
+        let errors = |label: String, predicted: &[f64]| {
+            let both = trace.measured.iter().zip(predicted);
+            series(
+                label,
+                &mut both.map(|(measured, predicted)| measured - predicted),
+            )
+        };
+        let name = format!("{}, {}", trace.column, trace.run);
+        let motion = vec![
+            values(name.clone(), &trace.measured),
+            values(format!("nominal, {AHEAD} s ahead"), &trace.nominal),
+            values(format!("fitted, {AHEAD} s ahead"), &trace.fitted),
+        ];
+        let errors = vec![
+            errors(format!("{name}: error, nominal"), &trace.nominal),
+            errors("error, fitted".to_owned(), &trace.fitted),
+        ];
+        let unit = channel.map_or("", |channel| &channel.unit.text);
+        [motion, errors].map(|series| Panel::new(unit, series))
+    });
+    let title = format!("{}: held-out runs", set.mechanism.name);
+    Figure::new(title, "t [s]", panels.chain(drifting(answer)).collect())
 }

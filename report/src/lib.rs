@@ -20,5 +20,4 @@ pub mod identification;
 pub mod page_shell;
 pub mod recording;
 pub mod svg;
-mod tables;
 pub mod text;

@@ -5,8 +5,7 @@ use std::fmt::Write as _;
 use appell_recordings::{DataSet, Difference, Finding, Part, Role, Run};
 use appell_spec::Severity;
 
-use crate::tables::Table;
-use crate::text::{number, short};
+use crate::text::{Table, number, short};
 
 /// The summary as text tables, in the units of the files.
 pub fn text(set: &DataSet) -> String {

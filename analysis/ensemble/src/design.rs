@@ -3,8 +3,7 @@
 use crate::distribution::Distribution;
 use crate::limits::MAX_CASES;
 use crate::normal;
-use crate::permutation::Permutation;
-use crate::random::Stream;
+use crate::random::{Permutation, Stream};
 use crate::sobol::{self, Coordinate};
 
 /// How the unit cube of the drawn factors is sampled.
@@ -70,11 +69,8 @@ pub enum DesignError {
         name: String,
     },
     /// Sensitivity indices need independent draws.
-    #[error("sensitivity indices need independent factors that are drawn: {reason}")]
-    NotIndependent {
-        /// The reason.
-        reason: &'static str,
-    },
+    #[error("sensitivity indices need independent factors that are drawn: {0}")]
+    NotIndependent(&'static str),
     /// More factors than the sequence has dimensions.
     #[error("{found} factors are too many for Sobol points; at most {most} are possible")]
     Dimensions {
@@ -305,7 +301,7 @@ fn independent(
     } else {
         return Ok(());
     };
-    Err(DesignError::NotIndependent { reason })
+    Err(DesignError::NotIndependent(reason))
 }
 
 fn count_cases(

@@ -14,13 +14,11 @@
 pub mod chunk;
 pub mod design;
 pub mod digest;
-mod directions;
 pub mod distribution;
 pub mod limits;
 pub mod normal;
 #[cfg(feature = "object-store")]
 pub mod objects;
-mod permutation;
 pub mod random;
 pub mod rows;
 pub mod run;

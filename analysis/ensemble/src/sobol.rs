@@ -1,12 +1,15 @@
 //! The Sobol sequence at any index, scrambled.
 
-use crate::directions::DIRECTIONS;
 use crate::random::{Stream, uniform};
 
 /// Bits of a coordinate that the sequence gives; those below are random.
 const BITS: usize = 32;
+/// A line for each dimension after the first one: its primitive polynomial, as bits with the leading and the last one,
+/// and its initial values, by S. Joe and F. Y. Kuo, SIAM Journal on Scientific Computing 30 (2008), their set
+/// new-joe-kuo-6.
+const DIRECTIONS: &str = include_str!("directions.txt");
 /// The most dimensions.
-pub(crate) const MOST_DIMENSIONS: usize = DIRECTIONS.len() + 1;
+pub(crate) const MOST_DIMENSIONS: usize = 160;
 /// The most points.
 pub(crate) const MOST_POINTS: u64 = 1 << BITS;
 
@@ -46,8 +49,12 @@ impl Coordinate {
 /// The direction numbers of a dimension, as fractions of 2³².
 fn directions(dimension: usize) -> [u32; BITS] {
     let mut v = [0; BITS];
-    let Some((polynomial, initial)) = dimension.checked_sub(1).and_then(|d| DIRECTIONS.get(d))
-    else {
+    let line = dimension
+        .checked_sub(1)
+        .and_then(|d| DIRECTIONS.lines().nth(d));
+    let words = line.into_iter().flat_map(str::split_whitespace);
+    let numbers: Vec<u32> = words.filter_map(|word| word.parse().ok()).collect();
+    let Some((polynomial, initial)) = numbers.split_first() else {
         for (bit, v) in v.iter_mut().enumerate() {
             *v = 1 << (BITS - 1 - bit);
         }
@@ -103,6 +110,7 @@ mod tests {
     /// One number of each coordinate in each of 2^k equal parts, scrambled or not.
     #[test]
     fn every_coordinate_is_stratified() {
+        assert_eq!(DIRECTIONS.lines().count() + 1, MOST_DIMENSIONS);
         for dimension in 0..MOST_DIMENSIONS {
             let coordinate = Coordinate::new(dimension, Stream::new(7, &dimension.to_string()));
             let mut seen = [false; 256];

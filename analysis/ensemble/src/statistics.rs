@@ -3,5 +3,4 @@
 pub mod beta;
 pub mod moments;
 pub mod order;
-pub mod proportion;
 pub mod sensitivity;

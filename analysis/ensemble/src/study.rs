@@ -20,7 +20,6 @@
 mod keep;
 mod motion;
 mod read;
-mod value;
 mod vary;
 
 use appell_recordings::fields::Fields;
@@ -32,7 +31,7 @@ use crate::limits::MAX_CASES;
 
 pub use keep::{Keep, Kept, Rare};
 pub use motion::{Method, Motion};
-pub use value::{Correlation, Entry, Placed, Text};
+pub use read::{Correlation, Entry, Placed, Text};
 pub use vary::{FEEDBACK, MODEL, Noise, Varied, Vary};
 
 /// A study as it is written.

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::design::{Design, Sampling};
 use crate::rows::{Column, Role, Rows};
 use crate::splitting::Probability;
+use crate::statistics::beta;
 use crate::statistics::moments::Moments;
 use crate::statistics::order::{self, Quantile, Selection};
-use crate::statistics::proportion;
 use crate::statistics::sensitivity::{Indices, Sums};
 
 /// Quantiles of every number, and of bands over time.
@@ -267,8 +267,8 @@ impl Summary {
                     column,
                     of,
                     happened,
-                    wilson: proportion::wilson(happened, of),
-                    exact: proportion::exact(happened, of),
+                    wilson: beta::wilson(happened, of),
+                    exact: beta::exact(happened, of),
                 })
                 .collect(),
             courses: courses(columns, &counts.seen, &quantiles),

@@ -7,12 +7,12 @@ use std::sync::Arc;
 use bytes::Bytes;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::column::reader::ColumnReader;
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
-use parquet::file::writer::SerializedFileWriter;
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type, TypePtr};
 use sha2::{Digest as _, Sha256};
 
@@ -55,33 +55,30 @@ pub(crate) fn written(rows: &Rows, columns: &[Column], study: &str) -> Result<Ve
         .take(rows.len())
         .map(|case| i64::try_from(case).unwrap_or(i64::MAX))
         .collect();
-    if let Some(mut column) = group.next_column()? {
-        column
-            .typed::<Int64Type>()
-            .write_batch(&cases, None, None)?;
-        column.close()?;
-    }
+    put::<Int64Type>(&mut group, &cases)?;
     for values in rows.values.iter().chain([&rows.ends]) {
-        if let Some(mut column) = group.next_column()? {
-            column
-                .typed::<DoubleType>()
-                .write_batch(values, None, None)?;
-            column.close()?;
-        }
+        put::<DoubleType>(&mut group, values)?;
     }
     let reasons: Vec<ByteArray> = rows.reasons.iter().map(|r| r.as_str().into()).collect();
-    if let Some(mut column) = group.next_column()? {
-        column
-            .typed::<ByteArrayType>()
-            .write_batch(&reasons, None, None)?;
-        column.close()?;
-    }
+    put::<ByteArrayType>(&mut group, &reasons)?;
     group.close()?;
     file.close()?;
     let place = place_of_checksum(&bytes)?;
     let digits = checksum(&bytes, &place);
     bytes[place].copy_from_slice(digits.as_bytes());
     Ok(bytes)
+}
+
+/// Writes the next column.
+fn put<T: DataType>(
+    group: &mut SerializedRowGroupWriter<'_, &mut Vec<u8>>,
+    values: &[T::T],
+) -> Result<()> {
+    if let Some(mut column) = group.next_column()? {
+        column.typed::<T>().write_batch(values, None, None)?;
+        column.close()?;
+    }
+    Ok(())
 }
 
 /// Where a file has the digits of its checksum.

@@ -5,7 +5,7 @@
 //! 1. [`operating_point`]: δẋ = A δx + B δu about a steady motion;
 //! 2. [`controllability`]: the controllable subspace and the uncontrollable modes;
 //! 3. [`reduction`]: the exact equations of chosen outputs alone;
-//! 4. [`placement`], [`robust_placement`] or [`lqr`]: the gains;
+//! 4. [`placement`] or [`lqr`]: the gains;
 //! 5. [`feedback`]: `u = u₀ − K (y − y_des(t))` as the inputs of a simulation.
 //!
 //! Also: [`sampled`] and [`sampler`] for sampled controllers with a delay, [`schedule`] for gain
@@ -15,15 +15,12 @@
 
 pub mod attraction;
 pub mod controllability;
-mod echelon;
 pub mod feedback;
 pub mod linear_system;
 pub mod lqr;
 pub mod operating_point;
 pub mod placement;
 pub mod reduction;
-pub mod riccati;
-pub mod robust_placement;
 pub mod sampled;
 pub mod sampler;
 pub mod schedule;

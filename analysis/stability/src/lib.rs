@@ -5,10 +5,10 @@
 //! | `point.rs`, `term.rs` | state, inputs and parameters; quantities that can be prescribed, varied or left free |
 //! | `steady.rs` | steady motions under conditions, and the dimension of their family |
 //! | `steady/` | essential and ignorable states; quaternions that turn; the equations of steady motions, their solution, starting points; the paths of points |
-//! | `stability.rs` | eigenvalues without the zeros of the family; the verdict |
-//! | `stability/` | smooth test functions for changes of stability; modes tracked through crossings |
+//! | `stability.rs` | eigenvalues without the zeros of the family; the verdict; modes tracked through crossings |
+//! | `stability/` | smooth test functions for changes of stability |
 //! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
-//! | `branch/` | data types; pseudo-arclength continuation; special points; branch points |
+//! | `branch/` | pseudo-arclength continuation; special points; branch points |
 //! | `chart.rs` | stability over two quantities: data types |
 //! | `chart/` | the grid and its verdicts; boundaries of stability and feasibility |
 //! | `control/` | linear models, gains, sampled controllers, schedules, controllability, regions of attraction |
@@ -48,7 +48,7 @@ pub use chart::plane::Axis;
 pub use chart::{Boundary, BoundaryFold, Cell, Chart, ChartError, Edge};
 pub use point::Point;
 pub use stability::critical::Change;
-pub use stability::locus::loci;
+pub use stability::loci;
 pub use stability::{Stability, StabilityError, Verdict, essential_matrix};
 pub use steady::cyclic::{Structure, StructureError};
 pub use steady::path::{Circle, circle};

@@ -9,10 +9,12 @@ pub(crate) mod path;
 pub(crate) mod starts;
 pub(crate) mod turning;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::point::Point;
+use crate::stability::essential_matrix;
 use crate::term::Term;
+use appell_runtime::linearise::Undetermined;
 use appell_runtime::model::{Model, ModelInfo, Quantity};
 use appell_spectra::singular::Singular;
 use cyclic::Structure;
@@ -85,14 +87,17 @@ impl<'a> SteadyProblem<'a> {
         &self.structure
     }
 
+    /// A of a motion in its independent essential states, with their indices in the model.
+    pub(super) fn essential_matrix(
+        &self,
+        point: &Point,
+    ) -> Result<(Vec<usize>, DMatrix<f64>), Undetermined> {
+        essential_matrix(self.model, &self.structure, point)
+    }
+
     /// Where searches begin; inputs and parameters that are not free have these values.
     pub fn base(&self) -> &Point {
         &self.base
-    }
-
-    /// The conditions on states, rates, outputs and freed quantities.
-    pub fn conditions(&self) -> &[Condition] {
-        &self.conditions
     }
 
     /// Inputs and parameters that are left free.
@@ -161,7 +166,7 @@ impl<'a> SteadyProblem<'a> {
             Term::Output(i) => (i, info.output_len()),
         };
         if index >= len {
-            return Err(SteadyError::Unknown { term });
+            return Err(SteadyError::Unknown(term));
         }
         let name = term.name(info);
         match term {
@@ -170,11 +175,9 @@ impl<'a> SteadyProblem<'a> {
                 Err(SteadyError::Turns { name, instead })
             }
             Term::State(state) if !self.structure.is_essential(state) => {
-                Err(SteadyError::Ignorable { name })
+                Err(SteadyError::Ignorable(name))
             }
-            Term::Rate(state) if self.structure.is_essential(state) => {
-                Err(SteadyError::Zero { name })
-            }
+            Term::Rate(state) if self.structure.is_essential(state) => Err(SteadyError::Zero(name)),
             Term::Rate(_) | Term::Output(_) if !self.is_constant(term) => {
                 let instead = self.others(|term| !matches!(term, Term::State(_)));
                 Err(SteadyError::NotConstant { name, instead })

@@ -5,13 +5,12 @@
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use appell_analysis::control::controllability::Controllability;
-use appell_analysis::control::lqr::{self, weights};
+use appell_analysis::control::lqr::{self, RiccatiError, weights};
 use appell_analysis::control::placement::{Placement, PlacementError};
 use appell_analysis::control::reduction::{ReductionError, independent_states, reduce};
-use appell_analysis::control::riccati::RiccatiError;
 use appell_analysis::control::sampled::{Sampling, SamplingError};
 use appell_analysis::control::staircase::Staircase;
-use appell_analysis::control::{LinearSystem, placement, robust_placement};
+use appell_analysis::control::{LinearSystem, placement};
 use nalgebra::{Complex, DMatrix};
 
 /// Two programs with rounding of their own.
@@ -222,7 +221,7 @@ fn gains_of_several_inputs_are_as_robust_as_those_of_other_programs() {
         ([[-3.0, 0.0], [-3.0, 0.0], [-5.0, 0.0], [-5.0, 0.0]], 456.00),
     ] {
         let wanted = poles(&wanted);
-        let placed = robust_placement::place(&aeroplane(), &wanted).unwrap();
+        let placed = placement::place(&aeroplane(), &wanted).unwrap();
         assert_poles(&placed, &wanted, 1e-9);
         println!("{wanted:?}: {} beside {condition}", placed.condition);
         assert!(placed.condition < 1.01 * condition, "{}", placed.condition);
@@ -249,7 +248,7 @@ fn poles_of_random_systems_go_where_they_are_wanted() {
                 .collect();
             wanted[0] = Complex::new(-1.0, 2.0);
             wanted[1] = wanted[0].conj();
-            let placed = robust_placement::place(&system, &wanted).unwrap();
+            let placed = placement::place(&system, &wanted).unwrap();
             assert!(placed.residual < 1e-8, "{order} {inputs} {placed:?}");
         }
     }
@@ -391,7 +390,7 @@ fn what_cannot_be_designed_is_told() {
     assert_eq!(unpaired, PlacementError::Unpaired { pole });
     let lost = placement::place(&chain_and_lost_mode(), &four[..3]).unwrap_err();
     assert_eq!(lost, PlacementError::Uncontrollable { rank: 2, order: 3 });
-    let multiple = robust_placement::place(&aeroplane(), &four).unwrap_err();
+    let multiple = placement::place(&aeroplane(), &four).unwrap_err();
     assert_eq!(
         multiple,
         PlacementError::Multiple {
@@ -403,7 +402,7 @@ fn what_cannot_be_designed_is_told() {
     let mut twice = aeroplane();
     let first = twice.b.column(0).into_owned();
     twice.b.set_column(1, &(first * 3.0));
-    let dependent = robust_placement::place(&twice, &four).unwrap_err();
+    let dependent = placement::place(&twice, &four).unwrap_err();
     assert_eq!(
         dependent,
         PlacementError::DependentInputs { inputs: 2, rank: 1 }

@@ -4,7 +4,7 @@ use appell_analysis::control::controllability::Controllability;
 use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
 use appell_analysis::control::reduction::{Subsystem, independent_states, reduce};
 use appell_analysis::control::sampled::Sampling;
-use appell_analysis::control::{lqr, robust_placement};
+use appell_analysis::control::{lqr, placement};
 use appell_analysis::{Point, Structure};
 use appell_runtime::model::Model;
 use nalgebra::{Complex, DMatrix};
@@ -270,7 +270,7 @@ fn law(subsystem: &Subsystem, request: &Goal) -> Result<Option<DesignedGains>, E
                 _ => poles.clone(),
             };
             let placed = match sampling {
-                None => robust_placement::place(system, &poles),
+                None => placement::place(system, &poles),
                 Some(sampling) => sampling.place(system, &poles),
             };
             let placed = placed.map_err(remedies::placement)?;

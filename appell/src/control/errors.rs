@@ -1,9 +1,9 @@
 //! Why no controller can be designed.
 
+pub use appell_analysis::control::lqr::RiccatiError;
 pub use appell_analysis::control::operating_point::OperatingPointError;
 pub use appell_analysis::control::placement::PlacementError;
 pub use appell_analysis::control::reduction::ReductionError;
-pub use appell_analysis::control::riccati::RiccatiError;
 pub use appell_analysis::control::sampled::SamplingError;
 pub use appell_spectra::spectrum::SpectrumError;
 

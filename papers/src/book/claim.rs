@@ -1,8 +1,12 @@
-//! Claims of a paper, compared with computed results.
+//! Claims of a paper, compared with computed results, and the part of the book that they make.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
+use appell_runtime::model::ModelInfo;
 use serde::{Deserialize, Serialize};
+
+use super::{Result, computation, failed};
 
 /// A part of the book.
 #[derive(Debug, Serialize)]
@@ -210,17 +214,153 @@ pub(crate) fn shown(value: f64) -> String {
     }
 }
 
+/// The texts of a part. In them `{name}` is a value that the computation sets.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Texts {
+    title: String,
+    about: String,
+    /// The command of statements without their own.
+    #[serde(default)]
+    command: String,
+    #[serde(default)]
+    captions: BTreeMap<String, String>,
+    #[serde(default)]
+    statements: BTreeMap<String, Statement>,
+    /// Definitions and laws: place, content, and the place of their use.
+    #[serde(default)]
+    definitions: Vec<[String; 3]>,
+    /// A table of parameters: name, unit as printed, value in SI.
+    #[serde(default)]
+    parameters: Vec<(String, String, f64)>,
+}
+
+/// A part: its texts, and the claims and pictures so far.
+pub(crate) struct Part {
+    texts: Texts,
+    values: BTreeMap<&'static str, String>,
+    pub(crate) claims: Vec<Claim>,
+    pictures: Vec<Picture>,
+}
+
+impl Part {
+    pub(crate) fn read(texts: &str) -> Result<Self> {
+        Ok(Self {
+            texts: toml::from_str(texts).map_err(computation)?,
+            values: BTreeMap::new(),
+            claims: Vec::new(),
+            pictures: Vec::new(),
+        })
+    }
+
+    /// Sets the value of a name in the texts from here on.
+    pub(crate) fn set(&mut self, name: &'static str, value: impl Display) {
+        self.values.insert(name, value.to_string());
+    }
+
+    fn filled(&self, text: &str) -> String {
+        let names = self.values.iter();
+        names.fold(text.to_owned(), |text, (name, value)| {
+            text.replace(&format!("{{{name}}}"), value)
+        })
+    }
+
+    pub(crate) fn statement(&self, key: &str) -> Result<Statement> {
+        let statement = self.texts.statements.get(key);
+        let statement = statement.ok_or_else(|| failed(&format!("no statement `{key}`")))?;
+        let command = match statement.command.as_str() {
+            "" => &self.texts.command,
+            command => command,
+        };
+        Ok(Statement {
+            place: self.filled(&statement.place),
+            published: self.filled(&statement.published),
+            command: self.filled(command),
+            note: self.filled(&statement.note),
+            ..statement.clone()
+        })
+    }
+
+    /// A statement holds or not.
+    pub(crate) fn found(&mut self, key: &str, ours: impl Into<String>, holds: bool) -> Result<()> {
+        let claim = self.statement(key)?.found(ours, holds);
+        self.claims.push(claim);
+        Ok(())
+    }
+
+    /// The definitions, each with these words before the place of its use.
+    pub(crate) fn define(&mut self, words: &str) {
+        let definitions = self.texts.definitions.iter().cloned();
+        let claims = definitions.map(|[place, published, used]| {
+            let statement = Statement {
+                place,
+                published,
+                command: self.texts.command.clone(),
+                agreement: Some(Reproduction::CannotBeChecked),
+                note: "a definition".to_owned(),
+                ..Statement::default()
+            };
+            statement.found(format!("{words} {used}"), true)
+        });
+        self.claims.extend(claims);
+    }
+
+    /// A number and its computed value.
+    pub(crate) fn number(&mut self, key: &str, pair: [f64; 2]) -> Result<()> {
+        let claim = self.statement(key)?.number(pair);
+        self.claims.push(claim);
+        Ok(())
+    }
+
+    /// The values of the parameters.
+    pub(crate) fn parameters(&mut self, info: &ModelInfo) -> Result<()> {
+        for (name, unit, value) in self.texts.parameters.clone() {
+            let index = info.parameter_index(&name);
+            let found = index.map_or(f64::NAN, |index| info.parameters[index].value);
+            self.set("parameter", format!("{name} = {value}{unit}"));
+            self.number("parameter", [value, found])?;
+        }
+        Ok(())
+    }
+
+    /// A picture with the caption of a key.
+    pub(crate) fn picture(&mut self, key: &str, svg: String) -> Result<()> {
+        let caption = self.texts.captions.get(key);
+        let caption = caption.ok_or_else(|| failed(&format!("no caption `{key}`")))?;
+        let caption = self.filled(caption);
+        self.pictures.push(Picture { svg, caption });
+        Ok(())
+    }
+
+    pub(crate) fn section(self) -> Section {
+        Section {
+            about: self.filled(&self.texts.about),
+            title: self.texts.title,
+            claims: self.claims,
+            pictures: self.pictures,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn digits_agree_to_half_a_unit_of_the_last_one() {
-        assert_eq!(digits(9.81, 9.814), 3);
-        assert_eq!(digits(9.81, 9.85), 2);
-        assert_eq!(digits(1.21, 1.2131), 3);
-        assert_eq!(digits(0.099, 0.0994), 2);
-        assert_eq!(digits(-2.0, 2.0), 0);
+        for (wanted, found, agreeing) in [
+            (9.81, 9.814, 3),
+            (9.81, 9.85, 2),
+            (0.099, 0.0994, 2),
+            (-2.0, 2.0, 0),
+            (10.0, 10.0, 15),
+            (536.67, 563.67, 1),
+            (1.0, f64::NAN, 0),
+        ] {
+            assert_eq!(digits(wanted, found), agreeing, "{wanted} {found}");
+        }
+        assert_eq!(shown(0.990_454_441_153_150_7), "0.9904544411532");
+        assert_eq!(shown(-2042.5), "-2042.5");
     }
 
     #[test]
@@ -259,16 +399,5 @@ mod tests {
             "5 statements of the paper: 1 exact, 1 approximate, 2 differ, 1 cannot be checked; \
              1 results beyond the paper"
         );
-    }
-
-    #[test]
-    fn digits_that_agree_are_counted() {
-        assert_eq!(digits(10.0, 10.0), 15);
-        assert_eq!(digits(1.21, 1.213), 3);
-        assert_eq!(digits(536.67, 563.67), 1);
-        assert_eq!(digits(1.0, -1.0), 0);
-        assert_eq!(digits(1.0, f64::NAN), 0);
-        assert_eq!(shown(0.990_454_441_153_150_7), "0.9904544411532");
-        assert_eq!(shown(-2042.5), "-2042.5");
     }
 }

@@ -7,8 +7,7 @@ use appell_analysis::{
 use appell_report::figure::{Curve, Stroke};
 use appell_runtime::model::Model;
 
-use crate::book::drawing::line;
-use crate::book::{Result, computation, failed, shipped};
+use crate::book::{Result, computation, failed, line, shipped};
 use appell::Error;
 use appell::steady::Resolved;
 use appell::steady::regions::Shown;

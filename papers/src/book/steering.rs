@@ -3,46 +3,36 @@
 //! | file | part of the book |
 //! |---|---|
 //! | `equations.rs` | equations that are formulas, by the identity test; definitions |
-//! | `numbers.rs` | equations whose content are numbers: critical values, circles, ranks |
+//! | `numbers.rs` | equations whose content are numbers: critical values, circles, ranks; results beyond the paper |
 //! | `tables.rs`, `manoeuvres.rs` | gains; closed loops |
 //! | `figure_3.rs` … `figure_8.rs` | figures, and the statements about them |
-//! | `additional.rs` | results beyond the paper |
 
-mod additional;
 pub(super) mod equations;
 mod figure_3;
 mod figure_5;
-mod figure_6;
 mod figure_7;
 mod figure_8;
 mod manoeuvres;
 mod numbers;
 mod tables;
 
-use super::{Result, Section};
+use super::{Result, Section, made};
 
-/// A part of the book: its name for progress messages, and its function of the number of grid
-/// points along each axis.
-type Part = (&'static str, fn(usize) -> Result<Section>);
-
-const PARTS: &[Part] = &[
+/// Parts with their names for progress messages; they are given the number of grid points along each axis.
+const PARTS: &[(&str, fn(usize) -> Result<Section>)] = &[
     ("equations", equations::section),
     ("critical values", numbers::section),
     ("tables", tables::section),
     ("figure 3", figure_3::section),
     ("figure 5", figure_5::section),
-    ("figure 6", figure_6::section),
+    ("figure 6", figure_5::figure_6),
     ("figure 7", figure_7::section),
     ("figure 8", figure_8::section),
-    ("results beyond the paper", additional::section),
+    ("results beyond the paper", numbers::additional),
 ];
 
 /// The book part by part, with charts of `grid` points along each axis; `making` is called with the
 /// current part and the progress.
-pub fn book(grid: usize, mut making: impl FnMut(&str, usize, usize)) -> Result<Vec<Section>> {
-    let part = |(number, (name, make)): (usize, &Part)| {
-        making(name, number, PARTS.len());
-        make(grid)
-    };
-    PARTS.iter().enumerate().map(part).collect()
+pub fn book(grid: usize, making: impl FnMut(&str, usize, usize)) -> Result<Vec<Section>> {
+    made(PARTS, grid, 0, making)
 }

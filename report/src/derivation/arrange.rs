@@ -3,8 +3,7 @@
 //! together.
 
 use super::Math;
-use super::angles::with_compound_angles;
-use super::collect::{Monomial, Term, collect, collect_turns, terms};
+use super::collect::{Monomial, Term, collect, collect_turns, terms, with_compound_angles};
 use super::writer::Writer;
 use appell_codegen::symbolic::print::assemble;
 use appell_codegen::symbolic::{Expr, Factor, Graph, Node, Rational};

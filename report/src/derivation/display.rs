@@ -1,6 +1,8 @@
-//! Equations in lines: breaks of long ones.
+//! Equations with their subjects, and their lines: breaks of long ones.
 
-use super::{About, Math};
+use appell_spec::mechanism::{BodyId, ConstraintId, CoordinateId, FrameId, LoadId, PointId};
+
+use super::Math;
 
 /// `left = right` on a line of its own.
 #[derive(Debug, Clone, PartialEq)]
@@ -177,4 +179,31 @@ fn flatten<'a>(math: &'a Math, depth: usize, pieces: &mut Vec<(Piece<'a>, usize)
         }
         whole => pieces.push((Piece::Whole(whole), depth)),
     }
+}
+
+/// The subject of an equation, in addition to its letters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum About {
+    /// Acceleration energy of a body.
+    Body(BodyId),
+    /// Velocity or acceleration of a point.
+    Point(PointId),
+    /// Angular velocity of a frame.
+    Frame(FrameId),
+    /// A row of a constraint.
+    Constraint(ConstraintId),
+    /// The rate of a coordinate, which constraints determine.
+    Rate(CoordinateId),
+    /// Virtual power of a load.
+    Load(LoadId),
+    /// The inertia of all bodies that move with both pseudo-velocities.
+    Inertia(usize, usize),
+    /// The generalised force of a pseudo-velocity.
+    Force(usize),
+    /// The equation of motion of a pseudo-velocity.
+    Motion(usize),
+    /// All bodies, as in the kinetic energy.
+    Bodies,
+    /// All loads, as in the potential energy.
+    Loads,
 }

@@ -15,7 +15,6 @@ pub(super) enum Rank {
     Constant = 1,
     /// Coordinates, signals, time.
     Position,
-    /// Inputs.
     Input,
     /// Pseudo-velocities and generalised velocities.
     Velocity,

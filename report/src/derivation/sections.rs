@@ -1,19 +1,13 @@
 //! The sections of the page, in reading order.
 
-mod accelerations;
 mod constraints;
-mod divisors;
 mod energy;
 mod equations;
-mod forces;
-mod jacobians;
 mod linear;
 mod loads;
 mod phrases;
 mod placement;
 mod quantities;
-mod reactions;
-mod solution;
 mod velocities;
 
 use super::writer::Writer;
@@ -29,7 +23,7 @@ pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Outcome<Vec
         placement::section(w),
         constraints::section(w),
         velocities::section(w),
-        accelerations::section(w),
+        velocities::accelerations(w),
     ]);
     // The handout needs M and b where they solve the equations in letters.
     let in_letters = stage != Stage::Equations || !equations::are_written_out(w);
@@ -40,16 +34,16 @@ pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Outcome<Vec
         }
     }
     if stage >= Stage::Equations {
-        sections.push(forces::section(w));
+        sections.push(loads::section(w));
         sections.push(equations::appell(w));
         sections.push(equations::motion(w));
         sections.push(equations::energies(w));
     }
     if stage >= Stage::Jacobians {
-        sections.push(jacobians::section(w));
+        sections.push(linear::jacobians(w));
     }
     if stage >= Stage::All {
-        sections.extend(reactions::section(w)?);
+        sections.extend(constraints::forces(w)?);
         sections.extend(quantities::outputs(w));
     }
     Ok(sections)

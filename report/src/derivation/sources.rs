@@ -59,7 +59,6 @@ fn letters(mechanism: &Mechanism) -> FxHashMap<Letter, usize> {
 
 /// The dependencies of one equation by itself.
 struct Own {
-    /// The letter that it defines.
     defines: Option<Letter>,
     letters: FxHashSet<Letter>,
     lines: BTreeSet<usize>,

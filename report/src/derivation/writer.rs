@@ -18,9 +18,7 @@ const WIDEST_SYSTEM: usize = 76;
 
 /// Writes formulas and records the names that they use.
 pub(super) struct Writer<'a> {
-    /// The mechanism.
     pub(super) mechanism: &'a Mechanism,
-    /// Its derivation.
     pub(super) derivation: &'a mut Derivation,
     pub(super) setter: Setter<Lexicon>,
     pub(super) dissolved: Dissolved,
@@ -54,7 +52,6 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The graph.
     pub(super) fn graph(&mut self) -> &mut Graph {
         &mut self.derivation.algebra.graph
     }

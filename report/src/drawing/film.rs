@@ -6,14 +6,13 @@ use std::f64::consts::PI;
 use appell_runtime::Trajectory;
 use appell_runtime::model::{At, Model};
 use appell_spec::mechanism::{
-    BodyId, Components, ConstraintKind, FrameId, GROUND, LoadId, LoadKind, Mechanism, ORIGIN,
-    PointId,
+    BodyId, Components, FrameId, GROUND, LoadId, LoadKind, Mechanism, ORIGIN, PointId,
 };
+use serde::Serialize;
 
 use super::link::{self, Link};
-use super::placement::{Placement, frames, points};
-use super::scene::Scene;
-use super::solids::{Solid, solids};
+use super::scene::{Placement, Scene, frames, points, set};
+use super::shapes::{Solid, solids};
 use super::space::{Matrix, Vector, add, dot, length};
 use super::view::View;
 use appell_codegen::mechanics::algebra::Algebra;
@@ -55,6 +54,8 @@ pub struct Film {
 }
 
 /// The shape of a body, in its frame and from its centre.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Shape {
     /// A disc.
     Wheel {
@@ -65,10 +66,16 @@ pub enum Shape {
         /// Its radius.
         radius: f64,
     },
-    /// A ball of this radius.
-    Ball(f64),
-    /// The image of the unit ball under this linear map, row by row.
-    Ellipsoid([[f64; 3]; 3]),
+    /// A ball.
+    Ball {
+        /// Its radius.
+        radius: f64,
+    },
+    /// The image of the unit ball under a linear map.
+    Ellipsoid {
+        /// The map, row by row.
+        map: [[f64; 3]; 3],
+    },
 }
 
 /// A force that an arrow shows.
@@ -81,7 +88,8 @@ pub struct Force {
 }
 
 /// Origin of a force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ForceKind {
     /// A constraint.
     Reaction,
@@ -136,17 +144,13 @@ impl FilmMaker {
         let all = [placement.point_exprs(), placement.frame_exprs(), &arrows].concat();
         let mut evaluation = Evaluation::new(graph, &all);
         let mut values = Values::new(graph, &self.symbols, &all, model, motion);
+        let view = View::of(mechanism, self.flat_across);
         let mut film = Film {
-            view: {
-                let view = View::of(mechanism, self.flat_across);
-                [view.right, view.up, view.floor[0], view.vertical]
-            },
+            view: [view.right, view.up, view.floor[0], view.vertical],
             flat_across: self.flat_across,
             contacts: contacts(mechanism),
             links: link::links(mechanism).collect(),
-            seats: mechanism
-                .frames
-                .ids()
+            seats: (mechanism.frames.ids())
                 .map(|frame| link::seat(mechanism, frame))
                 .collect(),
             shapes: Vec::new(),
@@ -193,12 +197,8 @@ impl FilmMaker {
 
 /// Points at which constraints hold bodies.
 fn contacts(mechanism: &Mechanism) -> Vec<PointId> {
-    let held = mechanism.constraints.iter().filter_map(|c| match c.kind {
-        ConstraintKind::Rolling { contact, .. } => Some(contact),
-        ConstraintKind::FixedVelocity { point, .. } => Some(point),
-        ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => None,
-    });
-    let held: BTreeSet<PointId> = held.collect();
+    let held = mechanism.constraints.iter().filter_map(link::held);
+    let held: BTreeSet<PointId> = held.map(|(_, point)| point).collect();
     held.into_iter().collect()
 }
 
@@ -292,7 +292,7 @@ fn shapes(mechanism: &Mechanism, scene: &Scene) -> Vec<(BodyId, Shape)> {
                 axis: inside(axis),
                 radius: length(radius),
             },
-            Solid::Ball { radius, .. } => Shape::Ball(radius),
+            Solid::Ball { radius, .. } => Shape::Ball { radius },
             Solid::Ellipsoid { square, .. } => {
                 let square = axes.map(|axis| inside(square.map(|row| dot(row, axis))));
                 let largest = (square[0][0] + square[1][1] + square[2][2]).sqrt();
@@ -300,7 +300,8 @@ fn shapes(mechanism: &Mechanism, scene: &Scene) -> Vec<(BodyId, Shape)> {
                 if size > 0.0 && largest > size {
                     return None;
                 }
-                Shape::Ellipsoid(factor(square, THINNEST * largest)?)
+                let map = factor(square, THINNEST * largest)?;
+                Shape::Ellipsoid { map }
             }
         };
         Some((id, shape))
@@ -366,7 +367,6 @@ struct Values<'m> {
     inputs: Vec<SymbolId>,
     /// Empty where no value depends on them.
     rates: Vec<SymbolId>,
-    /// By symbol.
     of_symbols: Vec<f64>,
 }
 
@@ -426,12 +426,6 @@ impl<'m> Values<'m> {
             set(&mut self.of_symbols, symbols, numbers);
         }
         at
-    }
-}
-
-fn set(values: &mut [f64], symbols: &[SymbolId], numbers: &[f64]) {
-    for (symbol, &number) in symbols.iter().zip(numbers) {
-        values[symbol.0 as usize] = number;
     }
 }
 

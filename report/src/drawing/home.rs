@@ -4,8 +4,10 @@ use std::collections::BTreeSet;
 
 use appell_spec::expr::{Expr, Quantity};
 use appell_spec::mechanism::{
-    Body, BodyId, Connection, ConstraintKind, CoordinateId, Load, LoadKind, Mechanism, PointId,
+    Body, BodyId, Connection, CoordinateId, Load, LoadKind, Mechanism, PointId,
 };
+
+use super::link::held;
 
 /// Points that represent a coordinate, pseudo-velocity, parameter, input, body, constraint or
 /// point.
@@ -17,34 +19,21 @@ pub(super) fn home(mechanism: &Mechanism, name: &str) -> BTreeSet<PointId> {
     points.extend(body.map(|body| body.centre));
     let mut constraints = mechanism.constraints.iter();
     let constraint = constraints.find(|constraint| constraint.name == name);
-    points.extend(constraint.and_then(|constraint| match constraint.kind {
-        ConstraintKind::Rolling { contact, .. } => Some(contact),
-        ConstraintKind::FixedVelocity { point, .. } => Some(point),
-        ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => None,
-    }));
-    for (index, coordinate) in mechanism.coordinates.entries() {
-        if coordinate.label.name == name {
-            points.extend(moved(mechanism, index));
-        }
+    points.extend(constraint.and_then(|constraint| Some(held(constraint)?.1)));
+    let coordinate = mechanism.coordinates.find(|q| q.label.name == name);
+    let speed = mechanism.pseudo_velocities.find(|w| w.label.name == name);
+    let moving = coordinate.map(Quantity::Coordinate);
+    for moving in moving
+        .into_iter()
+        .chain(speed.map(Quantity::PseudoVelocity))
+    {
+        points.extend(carried(mechanism, moving));
     }
-    for speed in &mechanism.pseudo_velocities {
-        if speed.label.name == name {
-            for index in mechanism.coordinates.ids() {
-                if mentions(&speed.definition, Quantity::Rate(index)) {
-                    points.extend(moved(mechanism, index));
-                }
-            }
-        }
+    if let Some(input) = mechanism.inputs.find(|u| u.label.name == name) {
+        points.extend(felt(mechanism, Quantity::Input(input)));
     }
-    for (index, input) in mechanism.inputs.entries() {
-        if input.label.name == name {
-            points.extend(felt(mechanism, Quantity::Input(index)));
-        }
-    }
-    for (index, parameter) in mechanism.parameters.entries() {
-        if parameter.label.name == name {
-            points.extend(shaped(mechanism, Quantity::Parameter(index)));
-        }
+    if let Some(parameter) = mechanism.parameters.find(|p| p.label.name == name) {
+        points.extend(shaped(mechanism, Quantity::Parameter(parameter)));
     }
     points
 }

@@ -1,8 +1,10 @@
 //! Links: points with their reference points, frames with points.
 
 use appell_spec::mechanism::{
-    Connection, FrameId, GROUND, Load, LoadKind, Mechanism, ORIGIN, Point, PointId,
+    BodyId, Connection, Constraint, ConstraintKind, FrameId, GROUND, Load, LoadKind, Mechanism,
+    ORIGIN, Point, PointId,
 };
+use serde::Serialize;
 
 /// A line between two points.
 pub struct Link {
@@ -15,7 +17,8 @@ pub struct Link {
 }
 
 /// Kind of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum LinkKind {
     /// Coordinates from the origin; not a part of the mechanism.
     Way,
@@ -63,6 +66,15 @@ pub(super) fn links(mechanism: &Mechanism) -> impl Iterator<Item = Link> {
     };
     let placed = mechanism.points.entries().filter_map(placed);
     placed.chain(mechanism.loads.iter().filter_map(connection))
+}
+
+/// The point at which a constraint holds a body, and the body, where it is given.
+pub(super) fn held(constraint: &Constraint) -> Option<(Option<BodyId>, PointId)> {
+    match constraint.kind {
+        ConstraintKind::Rolling { body, contact, .. } => Some((Some(body), contact)),
+        ConstraintKind::FixedVelocity { body, point, .. } => Some((body, point)),
+        ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => None,
+    }
 }
 
 /// The point at which the axes of a frame are drawn: the centre of its body, or the point from

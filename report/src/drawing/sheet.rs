@@ -36,7 +36,6 @@ const NAME_SIZE: [f64; 2] = [70.0, 13.0];
 const RING: f64 = 17.0;
 /// Length of the arrow of the weight.
 const ARROW: f64 = 40.0;
-/// Its tail.
 const ARROW_TAIL: [f64; 2] = [WIDTH - 70.0, 40.0];
 /// Its name, from the tail.
 const ARROW_NAME: [f64; 2] = [10.0, 14.0];

@@ -1,13 +1,11 @@
 //! Vectors and matrices of numbers, in the ground.
 
-/// A vector.
 pub(super) type Vector = [f64; 3];
 /// A matrix, row by row.
 pub(super) type Matrix = [Vector; 3];
 
 pub(super) const ZERO: Vector = [0.0; 3];
 
-/// A unit vector.
 pub(super) fn unit(axis: usize) -> Vector {
     let mut vector = ZERO;
     vector[axis] = 1.0;

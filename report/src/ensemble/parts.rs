@@ -6,8 +6,7 @@ use appell_ensemble::statistics::moments::Moments;
 use appell_ensemble::summary::Number;
 
 use super::About;
-use crate::tables::Table;
-use crate::text::short;
+use crate::text::{Table, short};
 
 /// Name and unit of a column.
 pub(super) fn labelled(column: &Column) -> String {

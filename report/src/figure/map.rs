@@ -2,8 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::area::{Area, INNER, SAMPLE, entry};
-use super::axis::Axis;
+use super::area::{Area, Axis, INNER, SAMPLE, entry};
 use super::{FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, STYLE, Series, TITLE_HEIGHT, WIDTH};
 use crate::svg::{Document, Element, path, text, title};
 

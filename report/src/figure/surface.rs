@@ -2,8 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::area::{SAMPLE, entry};
-use super::axis::{Axis, number};
+use super::area::{Axis, SAMPLE, entry, number};
 use super::map::{FILLS, LEGEND, Sample, element};
 use super::{HEADER_HEIGHT, LEFT, STYLE, TITLE_HEIGHT, WIDTH};
 use crate::svg::{self, Document, Element, text};

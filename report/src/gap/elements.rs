@@ -54,7 +54,6 @@ pub(super) fn bare_bar(part: f64) -> Markup {
     }
 }
 
-/// A figure with its caption.
 pub(super) fn figure(svg: String, caption: &str) -> Markup {
     html! {
         figure { (PreEscaped(svg)) figcaption { (caption) } }
@@ -66,7 +65,6 @@ pub(super) fn code(text: &str) -> Markup {
     html! { code { (text) } }
 }
 
-/// Cells of texts.
 pub(super) fn cells<const N: usize>(texts: [String; N]) -> [Markup; N] {
     texts.map(|text| html! { (text) })
 }

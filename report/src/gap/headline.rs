@@ -304,7 +304,7 @@ fn error(report: &Report, far: &HowFar) -> String {
     let mut budget = far.budget.iter();
     let has_more = is_determined(far.closed, far.closed_ci95)
         && budget.any(|part| part.is_effect() || part.is_law());
-    if let Some(refit) = refitted(&far.budget).filter(|_| has_more) {
+    if let Some(refit) = refitted(report).filter(|_| has_more) {
         let closed = percent(refit.closed);
         let _ = write!(text, ", {closed} by re-fitted parameters alone");
     }

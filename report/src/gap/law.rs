@@ -15,7 +15,7 @@ const BAND: f64 = 2.0;
 /// is a law.
 pub fn law_sentence(report: &Report) -> Option<String> {
     let law = report.law.as_ref()?;
-    let closes = part(report).map(|part| {
+    let closes = part_of_law(report).map(|part| {
         let closed = share(part.closed, part.interval);
         if part.closed > 0.0 {
             format!("; measured, it closes {closed} of the gap")
@@ -35,7 +35,7 @@ pub fn law_sentence(report: &Report) -> Option<String> {
 /// The number of the hypothesis with which `appell apply` writes the measured law, if it does and the law does not
 /// make predictions worse.
 pub(super) fn written(report: &Report) -> Option<usize> {
-    let betters = part(report).is_none_or(|part| part.closed > 0.0);
+    let betters = part_of_law(report).is_none_or(|part| part.closed > 0.0);
     report.law.as_ref().filter(|_| betters)?;
     let holds = |one: &Hypothesis| {
         let changes = one.changes.as_ref();
@@ -44,7 +44,8 @@ pub(super) fn written(report: &Report) -> Option<usize> {
     Some(report.which.iter().position(holds)? + 1)
 }
 
-fn part(report: &Report) -> Option<&Share> {
+/// The part that the measured law closes.
+pub(super) fn part_of_law(report: &Report) -> Option<&Share> {
     let far = report.how_far.as_ref()?;
     far.budget.iter().find(|part| part.is_law())
 }

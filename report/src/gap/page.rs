@@ -10,7 +10,6 @@ use maud::{Markup, PreEscaped, html};
 use super::budget::{budget, closes};
 use super::doubt::doubts;
 use super::elements::{bar, cells, code, figure, separated, table};
-use super::forces;
 use super::headline::Headline;
 use super::law::law;
 use super::numbers::{is_determined, percent};
@@ -105,7 +104,6 @@ fn reading(report: &Report) -> Markup {
     }
 }
 
-/// Lines as sentences.
 fn in_sentences(lines: &[String]) -> String {
     let lines = lines.iter();
     let lines = lines.map(|line| format!("{}.", capitalised(&line.replace('`', ""))));
@@ -360,7 +358,7 @@ fn how_far(report: &Report) -> Markup {
         };
     };
     if report.is_by_forces {
-        return forces::how_far(report, far);
+        return by_forces(report, far);
     }
     let rows = report.horizons.iter().map(|ahead| {
         let floor = ahead.noise_floor.map_or_else(|| "–".to_owned(), short);
@@ -494,4 +492,36 @@ fn recordings(set: &DataSet, report: &Report) -> Markup {
             p class="faint" { (line) }
         }
     }
+}
+
+/// The section of the page.
+pub(super) fn by_forces(report: &Report, far: &HowFar) -> Markup {
+    html! {
+        h2 { "How far" }
+        p {
+            "The RMS of the forces that the model misses on the held-out runs falls from "
+            (short(far.nominal)) " to " (short(far.with_effect)) " times their noise. "
+            (closes(far))
+        }
+        p class="faint" {
+            "Forces that the recorded motions take by the model, M ω̇ + b − Π with splines through the coordinates, are \
+             compared with those of the recorded inputs. No motion is simulated."
+        }
+        (traces(report, |trace| format!(
+            "Equation of {} in {} (held out): force of the inputs, force that the motion takes by each model, and \
+             the difference. The band shows two standard deviations of what is left of the training runs.",
+            trace.column, trace.run,
+        )))
+        p { "RMS of the missing forces in the training runs, in SI units." }
+        (disturbances(report, ["equation of", "parameters re-fitted", "with the effect"]))
+    }
+}
+
+/// The lines of a summary.
+pub fn left_of_forces(far: &HowFar) -> String {
+    let [nominal, refitted, effect] = [far.nominal, far.refitted, far.with_effect].map(short);
+    format!(
+        "forces missed on held-out runs, relative to their noise: nominal {nominal}, re-fitted {refitted}, with \
+         effect {effect}"
+    )
 }

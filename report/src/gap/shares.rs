@@ -107,11 +107,7 @@ fn are_parameters(report: &Report, effects: &[&Share]) -> bool {
 
 /// Effects none of which is named, and why.
 fn unnoticed(report: &Report, others: &[&Share], names: &str) -> String {
-    let refit = report
-        .how_far
-        .as_ref()
-        .and_then(|far| refitted(&far.budget));
-    if let Some(refit) = refit.filter(|_| are_parameters(report, others)) {
+    if let Some(refit) = refitted(report).filter(|_| are_parameters(report, others)) {
         let closed = percent(refit.closed);
         return format!(
             "{names}: re-fitted together with the others it closes {closed} of the gap"
@@ -156,13 +152,12 @@ fn unsettled([low, high]: [f64; 2]) -> &'static str {
 
 /// `re-fitted parameters close 98 % of the gap`, where they matter.
 pub(super) fn refitted_share(report: &Report) -> Option<String> {
-    let refit = refitted(&report.how_far.as_ref()?.budget)?;
-    let closed = percent(refit.closed);
+    let closed = percent(refitted(report)?.closed);
     Some(format!("re-fitted parameters close {closed} of the gap"))
 }
 
 /// The part of the re-fitted parameters, where it matters.
-pub(super) fn refitted(budget: &[Share]) -> Option<&Share> {
-    let mut budget = budget.iter();
+pub(super) fn refitted(report: &Report) -> Option<&Share> {
+    let mut budget = report.how_far.as_ref()?.budget.iter();
     budget.find(|part| part.is_refit() && part.is_material)
 }

@@ -6,6 +6,7 @@ use appell_gap::diagnose::{
     Advice, Change, Changes, GapVerdict, Hypothesis, Left, Refitted, Report, Value,
 };
 
+use super::law::part_of_law;
 use super::numbers::{bounded, part_of_all, sized};
 use super::shares::{refitted, refitted_share, shares};
 use crate::text::{short, with_unit};
@@ -172,13 +173,8 @@ fn deviations(parameter: &Refitted) -> Option<String> {
 /// `J 0.00012 -> 0.000151 kg*m^2 (+2.6 stated deviations)`: the parameters that the re-fit without effects moves by more
 /// than one stated deviation, where it closes a material share of the gap.
 pub(super) fn refit_moves(report: &Report) -> Vec<String> {
-    let is_material = report
-        .how_far
-        .iter()
-        .any(|far| refitted(&far.budget).is_some());
-    let plain = report.which.iter().find(|one| one.effects.is_empty());
-    let changes = plain.and_then(|one| one.changes.as_ref());
-    let changes = changes.filter(|_| is_material).into_iter();
+    let changes = plain(report).and_then(|one| one.changes.as_ref());
+    let changes = changes.filter(|_| refitted(report).is_some()).into_iter();
     let far = changes.flat_map(Changes::refitted);
     let mut far: Vec<&Refitted> = far
         .filter(|one| one.moved_by().is_some_and(|by| by.abs() > 1.0))
@@ -202,15 +198,18 @@ fn as_written(value: f64) -> String {
 
 /// The significantly changed parameters, where predictions need them.
 pub fn refit_sentence(report: &Report) -> Option<String> {
-    let plain = report.which.iter().find(|one| one.effects.is_empty());
-    let moved = moved(plain);
+    let moved = moved(plain(report));
     (needs_refit(report) && !moved.is_empty()).then(|| moved.join(", "))
 }
 
 /// Whether predictions need re-fitted parameters.
 pub(super) fn needs_refit(report: &Report) -> bool {
-    let far = report.how_far.as_ref();
-    far.is_none_or(|far| refitted(&far.budget).is_some())
+    report.how_far.is_none() || refitted(report).is_some()
+}
+
+/// The hypothesis of re-fitted parameters alone.
+fn plain(report: &Report) -> Option<&Hypothesis> {
+    report.which.iter().find(|one| one.effects.is_empty())
 }
 
 /// Where several hypotheses may be true: the probability of the leading one, equivalents of its material effects, and the
@@ -316,8 +315,7 @@ fn unnamed(report: &Report, shares: Option<String>) -> String {
 
 /// `; measured, it closes 90 % of the gap`
 fn law_share(report: &Report) -> Option<String> {
-    let mut budget = report.how_far.as_ref()?.budget.iter();
-    let law = budget.find(|part| part.is_law() && part.is_material)?;
+    let law = part_of_law(report).filter(|law| law.is_material)?;
     let closed = part_of_all(law.closed);
     Some(format!("; measured, it closes {closed} of the gap"))
 }

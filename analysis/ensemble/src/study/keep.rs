@@ -3,8 +3,8 @@
 use appell_spec::{Code, shown};
 use toml::de::DeTable;
 
-use super::read::Reader;
-use super::value::{Placed, Text};
+use super::lacks;
+use super::read::{Placed, Reader, Text};
 use crate::limits::MAX_PARTICLES;
 
 /// An entry of `[keep]`.
@@ -54,9 +54,7 @@ pub struct Rare {
 }
 
 const FORMS: [&str; 6] = ["end", "max", "min", "mean", "when", "course"];
-const KEYS: [&str; 10] = [
-    "end", "max", "min", "mean", "when", "course", "at_s", "stop", "unit", "about",
-];
+const OTHERS: [&str; 4] = ["at_s", "stop", "unit", "about"];
 /// Particles of a splitting.
 const PARTICLES: u64 = 1000;
 
@@ -67,30 +65,13 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
         let Some(entry) = read.table(value, wanted) else {
             continue;
         };
-        read.fields.only(entry, &KEYS);
+        read.fields.only(entry, &[&FORMS[..], &OTHERS].concat());
         let about = read.sentence(entry, "about");
         let unit = read.text(entry, "unit");
         let at = read.number(entry, "at_s");
         let stop = read.fields.flag(entry, "stop");
-        let given: Vec<&str> = FORMS
-            .into_iter()
-            .filter(|form| entry.get(*form).is_some())
-            .collect();
-        // An unknown key has been reported already.
-        if given.is_empty()
-            && entry
-                .keys()
-                .any(|key| !KEYS.contains(&key.get_ref().as_ref()))
-        {
-            continue;
-        }
-        let [form] = given[..] else {
-            let message = match given[..] {
-                [] => format!("`{}` names no quantity to keep", name.text),
-                _ => format!("`{}` keeps two things", name.text),
-            };
-            let help = format!("write one of {}", FORMS.join(", "));
-            read.tell(Code::ConflictingKeys, message, name.at, &help);
+        let wrong = ["names no quantity to keep", "keeps two things"];
+        let Some(form) = read.only_one(&name, entry, [&FORMS, &OTHERS], wrong) else {
             continue;
         };
         let Some(of) = entry.get(form).and_then(|value| read.value(value)) else {
@@ -125,8 +106,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             about,
         });
     }
-    let keep = table.get("keep").map(|keep| keep.get_ref().as_table());
-    if keep.is_none_or(|keep| keep.is_some_and(DeTable::is_empty)) {
+    if lacks(table, "keep") {
         let help =
             "write the quantities to keep under `[keep]`, such as `reached = { end = \"x\" }`";
         read.tell(Code::MissingSection, "nothing is kept", 0..0, help);

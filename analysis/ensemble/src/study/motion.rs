@@ -3,8 +3,7 @@
 use appell_spec::Code;
 use toml::de::DeTable;
 
-use super::read::Reader;
-use super::value::{Entry, Placed, Text};
+use super::read::{Entry, Placed, Reader, Text};
 use crate::limits::{DURATIONS, MAX_STEPS, MAX_TIMES, MAX_TOLERANCE, MAX_VARIANTS};
 
 /// The integrators.

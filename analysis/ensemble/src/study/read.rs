@@ -1,4 +1,4 @@
-//! Values of a study file, each with its place.
+//! Values of a study file, each with its place, and how they are read.
 
 use appell_recordings::fields::{Fields, Value};
 use appell_spec::diagnostic::MAX_SHOWN;
@@ -7,7 +7,6 @@ use appell_spec::limits::MAX_SENTENCE;
 use appell_spec::{Code, did_you_mean, is_forbidden, name, shown};
 use toml::de::{DeTable, DeValue};
 
-use super::value::{Correlation, Entry, Placed, Text};
 use crate::design::Sampling;
 use crate::limits::{MAX_ENTRIES, MAX_LIST};
 
@@ -179,6 +178,29 @@ impl Reader<'_> {
         table
     }
 
+    /// The only one of several keys that an entry has. Else `wrong` tells what is wrong with none and with several of
+    /// them, unless an unknown key has been reported already.
+    pub(super) fn only_one(
+        &mut self,
+        name: &Text,
+        entry: &DeTable<'_>,
+        [forms, others]: [&[&'static str]; 2],
+        wrong: [&str; 2],
+    ) -> Option<&'static str> {
+        let given = forms.iter().filter(|form| entry.contains_key(**form));
+        let given: Vec<&str> = given.copied().collect();
+        let is_known = |key: &str| forms.contains(&key) || others.contains(&key);
+        if let [form] = given[..] {
+            return Some(form);
+        }
+        if !given.is_empty() || entry.keys().all(|key| is_known(key.get_ref())) {
+            let message = format!("`{}` {}", name.text, wrong[usize::from(!given.is_empty())]);
+            let help = format!("write one of {}", forms.join(", "));
+            self.tell(Code::ConflictingKeys, message, name.at.clone(), &help);
+        }
+        None
+    }
+
     /// The items of a section in the order of the text. Their names are those of specs: columns, figures and files
     /// are called after them.
     pub(super) fn items<'v, 'd>(
@@ -318,4 +340,52 @@ impl Reader<'_> {
         }
         read
     }
+}
+
+/// A text with its place in the study file, which its `Debug` leaves out.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Text {
+    /// The text; of a number its digits.
+    pub text: String,
+    /// Its position, quotes included.
+    pub at: Span,
+}
+
+impl std::fmt::Debug for Text {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.text.fmt(f)
+    }
+}
+
+/// A value with its place in the study file, which its `Debug` leaves out.
+#[derive(Clone, PartialEq)]
+pub struct Placed<T> {
+    /// The value.
+    pub value: T,
+    /// Its position.
+    pub at: Span,
+}
+
+impl<T: std::fmt::Debug> std::fmt::Debug for Placed<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.value.fmt(f)
+    }
+}
+
+/// A pair of factors with the correlation of their normal scores.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Correlation {
+    /// Their names.
+    pub pair: [Text; 2],
+    /// From −1 to 1.
+    pub value: Placed<f64>,
+}
+
+/// A name with a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// The name.
+    pub name: Text,
+    /// The value.
+    pub value: Text,
 }

@@ -3,8 +3,7 @@
 use appell_spec::Code;
 use toml::de::DeTable;
 
-use super::read::Reader;
-use super::value::{Placed, Text};
+use super::read::{Placed, Reader, Text};
 use crate::limits::{MAX_VALUES, MAX_VARIANTS};
 
 /// Entries of `[vary]` that choose between specs and between laws.
@@ -78,21 +77,7 @@ const FORMS: [&str; 8] = [
     "grid",
     "range",
 ];
-const KEYS: [&str; 13] = [
-    "scatter",
-    "normal",
-    "uniform",
-    "lognormal",
-    "triangular",
-    "choice",
-    "grid",
-    "range",
-    "count",
-    "weights",
-    "truncate",
-    "unit",
-    "about",
-];
+const OTHERS: [&str; 5] = ["count", "weights", "truncate", "unit", "about"];
 
 pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Vary> {
     let mut all = Vec::new();
@@ -100,7 +85,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Vary> {
         let Some(entry) = read.table(value, "a table such as { normal = [5, 0.2] }") else {
             continue;
         };
-        read.fields.only(entry, &KEYS);
+        read.fields.only(entry, &[&FORMS[..], &OTHERS].concat());
         let unit = read.text(entry, "unit");
         let about = read.sentence(entry, "about");
         let truncate = entry.get("truncate").and_then(|value| pair(read, value));
@@ -123,27 +108,8 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Vary> {
 }
 
 fn form(read: &mut Reader<'_>, entry: &DeTable<'_>, name: &Text) -> Option<Varied> {
-    let given: Vec<&str> = FORMS
-        .into_iter()
-        .filter(|form| entry.get(*form).is_some())
-        .collect();
-    // An unknown key has been reported already.
-    if given.is_empty()
-        && entry
-            .keys()
-            .any(|key| !KEYS.contains(&key.get_ref().as_ref()))
-    {
-        return None;
-    }
-    let [form] = given[..] else {
-        let message = match given[..] {
-            [] => format!("`{}` does not say how it varies", name.text),
-            _ => format!("`{}` varies in two ways", name.text),
-        };
-        let help = format!("write one of {}", FORMS.join(", "));
-        read.tell(Code::ConflictingKeys, message, name.at.clone(), &help);
-        return None;
-    };
+    let wrong = ["does not say how it varies", "varies in two ways"];
+    let form = read.only_one(name, entry, [&FORMS, &OTHERS], wrong)?;
     let value = entry.get(form)?;
     let chooses = [MODEL, FEEDBACK].contains(&name.text.as_str());
     if chooses && !matches!(form, "choice" | "grid") {

@@ -203,6 +203,35 @@ impl OnCurve {
     }
 }
 
+/// The curve through a point along its tangent, from end to end, with why it ends on both sides; `follow` gives the
+/// points after one along its tangent.
+pub(crate) fn both_ways(
+    start: &OnCurve,
+    follow: impl Fn(&OnCurve) -> (Vec<OnCurve>, End),
+) -> (Vec<OnCurve>, [End; 2]) {
+    let (forward, last) = follow(start);
+    let (mut points, first) = if last == End::Closed {
+        (Vec::new(), last)
+    } else {
+        let mut back = start.clone();
+        back.tangent.neg_mut();
+        let (points, first) = follow(&back);
+        (turned(points), first)
+    };
+    points.push(start.clone());
+    points.extend(forward);
+    (points, [first, last])
+}
+
+/// A curve from its other end.
+pub(crate) fn turned(mut points: Vec<OnCurve>) -> Vec<OnCurve> {
+    points.reverse();
+    for point in &mut points {
+        point.tangent.neg_mut();
+    }
+    points
+}
+
 /// Points after `start` along its tangent, with steps of at most `longest`, until `limit` returns
 /// an end between two of them.
 pub(crate) fn follow(

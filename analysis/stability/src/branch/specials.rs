@@ -6,7 +6,7 @@ use super::continuation::{End, OnCurve};
 use super::crossing::Crossing;
 use super::{Branch, BranchError, BranchPoint, Branches, Kind, Requirement, Special};
 use crate::stability::critical::{Change, Criteria};
-use crate::stability::{Stability, StabilityError, essential_matrix};
+use crate::stability::{Stability, StabilityError};
 use crate::steady::equations::SteadyEquations;
 use appell_runtime::contact::{ContactForce, ContactForces};
 use appell_spectra::spectrum::{Complex, characteristic_polynomial};
@@ -96,8 +96,7 @@ impl Branches<'_> {
             });
         }
         let critical = |z: &DVector<f64>, which: usize| {
-            let point = equations.point(z);
-            let (_, matrix) = essential_matrix(model, self.problem.structure(), &point).ok()?;
+            let (_, matrix) = self.problem.essential_matrix(&equations.point(z)).ok()?;
             let polynomial = characteristic_polynomial(&matrix).ok()?;
             Some(criteria.values(&polynomial)[which])
         };

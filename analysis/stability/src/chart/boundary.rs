@@ -1,6 +1,6 @@
 //! Stability boundaries as curves over two quantities.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::level::{Curve, Level, unknowns};
 use super::plane::Plane;
@@ -8,7 +8,6 @@ use super::{Boundary, BoundaryFold, Cell, Chart, ChartError, Edge};
 use crate::branch::Requirement;
 use crate::branch::continuation::OnCurve;
 use crate::stability::critical::{Change, Criteria};
-use crate::stability::essential_matrix;
 use appell_spectra::spectrum::{characteristic_polynomial, eigenvalues};
 
 /// Real parts above this fraction of a typical eigenvalue are growth, where repeated eigenvalues
@@ -30,12 +29,9 @@ pub(crate) fn boundaries(
         };
         critical.boundaries(chart)
     };
-    Ok(std::thread::scope(|scope| {
-        let pairs = scope.spawn(|| of(1));
-        let mut found = of(0);
-        found.extend(pairs.join().unwrap_or_default());
-        found
-    }))
+    let (mut found, pairs) = rayon::join(|| of(0), || of(1));
+    found.extend(pairs);
+    Ok(found)
 }
 
 /// Where requirements begin or cease to hold.
@@ -76,8 +72,7 @@ fn criteria(plane: &Plane<'_>, chart: &Chart, zeros: usize) -> Result<Criteria, 
     let mut polynomials = Vec::new();
     for cell in cells.iter().step_by(each) {
         let point = plane.equations.point(&unknowns(plane, cell));
-        let problem = plane.problem;
-        let (_, matrix) = essential_matrix(problem.model(), problem.structure(), &point)?;
+        let (_, matrix) = plane.problem.essential_matrix(&point)?;
         polynomials.push(characteristic_polynomial(&matrix)?);
     }
     Ok(Criteria::of(&polynomials, zeros))
@@ -93,12 +88,8 @@ struct Critical<'a> {
 impl Critical<'_> {
     fn boundaries(&self, chart: &Chart) -> Vec<Boundary> {
         let value = |z: &DVector<f64>| {
-            let problem = self.plane.problem;
-            let point = self.plane.equations.point(z);
-            let matrix = essential_matrix(problem.model(), problem.structure(), &point);
-            let polynomial = matrix
-                .ok()
-                .and_then(|(_, a)| characteristic_polynomial(&a).ok());
+            let matrix = self.matrix(z);
+            let polynomial = matrix.and_then(|a| characteristic_polynomial(&a).ok());
             polynomial.map_or(f64::NAN, |p| self.criteria.values(&p)[self.which])
         };
         let level = Level {
@@ -130,13 +121,16 @@ impl Critical<'_> {
         })
     }
 
+    fn matrix(&self, z: &DVector<f64>) -> Option<DMatrix<f64>> {
+        let point = self.plane.equations.point(z);
+        let matrix = self.plane.problem.essential_matrix(&point).ok();
+        matrix.map(|(_, matrix)| matrix)
+    }
+
     /// The change of the eigenvalues at a motion, and whether it changes stability.
     fn at(&self, z: &DVector<f64>) -> (Option<Change>, bool) {
-        let problem = self.plane.problem;
-        let point = self.plane.equations.point(z);
-        let matrix = essential_matrix(problem.model(), problem.structure(), &point);
-        let spectrum = matrix.ok().and_then(|(_, a)| eigenvalues(&a).ok());
-        let values = spectrum.unwrap_or_default();
+        let values = self.matrix(z).and_then(|a| eigenvalues(&a).ok());
+        let values = values.unwrap_or_default();
         let change = self.criteria.change(self.which, &values);
         let grows = GROWS * self.criteria.unit;
         let rests = values.iter().all(|value| value.re <= grows);

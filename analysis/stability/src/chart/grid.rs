@@ -1,18 +1,19 @@
 //! The steady motions of a chart, grid point by grid point.
 
 use std::cmp::Ordering;
-use std::iter;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use nalgebra::DVector;
+use rayon::iter::{
+    IndexedParallelIterator as _, IntoParallelIterator as _, IntoParallelRefIterator as _,
+    ParallelIterator as _,
+};
 
-use super::boundary;
 use super::grid_continuation::GridContinuation;
 use super::plane::{Axis, Plane};
-use super::{Cell, Chart, ChartError, MOST};
+use super::{Cell, Chart, ChartError, MOST, boundary};
 use crate::branch::{BranchError, Requirement};
 use crate::stability::critical::REST;
-use crate::stability::{Verdict, essential_matrix, zero_count};
+use crate::stability::{Verdict, zero_count};
 use crate::steady::SteadyProblem;
 use appell_spectra::spectrum::Eigenvalues;
 
@@ -48,16 +49,21 @@ impl Chart {
         }
         let plane = Plane::new(&problem, axes);
         let (seeds, zeros) = seeds(&plane, starts)?;
-        let motions = motions(&plane, &seeds, starts, threads);
         let judge = Judge {
             plane: &plane,
             requirements,
             zeros,
         };
+        let cells = || judge.cells(&motions(&plane, &seeds, starts));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.max(1));
         let mut chart = Self {
             axes,
             unknowns: plane.equations.unknowns.clone(),
-            cells: judge.cells(&motions, threads),
+            cells: match pool.build() {
+                Ok(pool) => pool.install(cells),
+                // Where no thread can be started.
+                Err(_) => cells(),
+            },
             boundaries: Vec::new(),
             edges: Vec::new(),
         };
@@ -85,8 +91,7 @@ fn seeds(plane: &Plane<'_>, starts: usize) -> Result<(Vec<DVector<f64>>, usize),
             match here.solve_isolated(starts) {
                 Ok(motions) => {
                     for motion in motions {
-                        let (model, structure) = (problem.model(), problem.structure());
-                        let (_, matrix) = essential_matrix(model, structure, &motion.point)?;
+                        let (_, matrix) = problem.essential_matrix(&motion.point)?;
                         zeros = zeros.min(zero_count(&matrix)?);
                         seeds.push(plane.equations.unknowns_of(&motion.point));
                     }
@@ -101,17 +106,12 @@ fn seeds(plane: &Plane<'_>, starts: usize) -> Result<(Vec<DVector<f64>>, usize),
     }
 }
 
-/// The motions of the whole grid: a band for each row of seeds, then across their edges. The work in
-/// bands differs, so each thread takes the next one when it is free.
-fn motions(
-    plane: &Plane<'_>,
-    seeds: &[DVector<f64>],
-    starts: usize,
-    threads: usize,
-) -> Vec<Vec<DVector<f64>>> {
+/// The motions of the whole grid: a band for each row of seeds, then across their edges.
+fn motions(plane: &Plane<'_>, seeds: &[DVector<f64>], starts: usize) -> Vec<Vec<DVector<f64>>> {
     let rows = plane.axes[1].count;
     let high = rows.div_ceil(SEEDS);
-    let filled = |from: usize| {
+    let filled = |number: usize| {
+        let from = number * high;
         let mut band = GridContinuation::over(plane, from..rows.min(from + high));
         for seed in seeds {
             band.seed(seed);
@@ -119,18 +119,8 @@ fn motions(
         }
         band
     };
-    let next = AtomicUsize::new(0);
-    let taken = || {
-        let from = iter::repeat_with(|| next.fetch_add(high, Relaxed));
-        let bands = from.take_while(|&from| from < rows).map(filled);
-        bands.collect::<Vec<_>>()
-    };
-    let mut bands: Vec<GridContinuation<'_>> = std::thread::scope(|scope| {
-        let running: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(taken)).collect();
-        let taken = running.into_iter().filter_map(|bands| bands.join().ok());
-        taken.flatten().collect()
-    });
-    bands.sort_by_key(GridContinuation::first_row);
+    let numbers = (0..rows.div_ceil(high)).into_par_iter().with_max_len(1);
+    let bands = numbers.map(filled).collect();
     let mut all = GridContinuation::joined(plane, bands);
     all.continue_all();
     all.fill_holes(plane.problem, starts);
@@ -145,41 +135,32 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// The cells of all grid points, shared among threads.
-    fn cells(&self, motions: &[Vec<DVector<f64>>], threads: usize) -> Vec<Vec<Cell>> {
-        let share = motions.len().div_ceil(threads.max(1)).max(1);
-        std::thread::scope(|scope| {
-            let part = |motions| scope.spawn(move || self.part(motions));
-            let running: Vec<_> = motions.chunks(share).map(part).collect();
-            let parts = running.into_iter();
-            parts
-                .flat_map(|part| part.join().unwrap_or_default())
-                .collect()
-        })
-    }
-
-    fn part(&self, motions: &[Vec<DVector<f64>>]) -> Vec<Vec<Cell>> {
-        let mut solver = Eigenvalues::new(0);
-        let places = motions.iter().map(|place| {
-            let cells = place.iter().filter_map(|z| self.cell(z, &mut solver));
-            let mut cells: Vec<Cell> = cells.collect();
-            // In an order that does not depend on how they were found.
-            cells.sort_by(|a, b| {
-                let pairs = a.unknowns.iter().zip(&b.unknowns);
-                let mut orders = pairs.map(|(a, b)| rounded(*a).total_cmp(&rounded(*b)));
-                orders
-                    .find(|order| order.is_ne())
-                    .unwrap_or(Ordering::Equal)
-            });
-            cells
-        });
+    /// The cells of all grid points.
+    fn cells(&self, motions: &[Vec<DVector<f64>>]) -> Vec<Vec<Cell>> {
+        let motions = motions.par_iter();
+        let places = motions.map_init(
+            || Eigenvalues::new(0),
+            |solver, place| {
+                let cells = place.iter().filter_map(|z| self.cell(z, solver));
+                let mut cells: Vec<Cell> = cells.collect();
+                // In an order that does not depend on how they were found.
+                cells.sort_by(|a, b| {
+                    let pairs = a.unknowns.iter().zip(&b.unknowns);
+                    let mut orders = pairs.map(|(a, b)| rounded(*a).total_cmp(&rounded(*b)));
+                    orders
+                        .find(|order| order.is_ne())
+                        .unwrap_or(Ordering::Equal)
+                });
+                cells
+            },
+        );
         places.collect()
     }
 
     fn cell(&self, z: &DVector<f64>, solver: &mut Eigenvalues) -> Option<Cell> {
         let (problem, equations) = (self.plane.problem, &self.plane.equations);
         let (model, point) = (problem.model(), equations.point(z));
-        let (states, matrix) = essential_matrix(model, problem.structure(), &point).ok()?;
+        let (states, matrix) = problem.essential_matrix(&point).ok()?;
         if solver.size() != states.len() {
             *solver = Eigenvalues::new(states.len());
         }

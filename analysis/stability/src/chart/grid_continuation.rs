@@ -43,10 +43,6 @@ impl<'a> GridContinuation<'a> {
         }
     }
 
-    pub(crate) fn first_row(&self) -> usize {
-        self.rows.start
-    }
-
     /// Joins consecutive bands of rows; motions at their edges are continued again.
     pub(crate) fn joined(plane: &'a Plane<'a>, bands: Vec<Self>) -> Self {
         let mut all = Self::over(plane, 0..plane.axes[1].count);
@@ -129,29 +125,21 @@ impl<'a> GridContinuation<'a> {
         let mut depth: Vec<usize> = (0..nodes)
             .map(|node| if known(node) { 0 } else { nodes })
             .collect();
-        // Forwards from the preceding neighbours, then backwards from the following ones.
-        for node in 0..nodes {
-            let i = node % count;
-            let before = [
-                (i > 0).then(|| node - 1),
-                node.checked_sub(count),
-                node.checked_sub(count + 1).filter(|_| i > 0),
-                node.checked_sub(count - 1).filter(|_| i + 1 < count),
-            ];
-            for other in before.into_iter().flatten() {
-                depth[node] = depth[node].min(depth[other] + 1);
-            }
-        }
-        for node in (0..nodes).rev() {
-            let i = node % count;
-            let after = [
-                (i + 1 < count).then_some(node + 1),
-                Some(node + count),
-                (i + 1 < count).then_some(node + count + 1),
-                (i > 0).then(|| node + count - 1),
-            ];
-            for other in after.into_iter().flatten().filter(|&other| other < nodes) {
-                depth[node] = depth[node].min(depth[other] + 1);
+        // Forwards from the preceding neighbours, then backwards from the following ones, which are those that precede
+        // in the grid turned about.
+        for turned in [false, true] {
+            let place = |node: usize| if turned { nodes - 1 - node } else { node };
+            for node in 0..nodes {
+                let i = node % count;
+                let before = [
+                    (i > 0).then(|| node - 1),
+                    node.checked_sub(count),
+                    node.checked_sub(count + 1).filter(|_| i > 0),
+                    node.checked_sub(count - 1).filter(|_| i + 1 < count),
+                ];
+                for other in before.into_iter().flatten() {
+                    depth[place(node)] = depth[place(node)].min(depth[place(other)] + 1);
+                }
             }
         }
         let deepest = (0..nodes).max_by_key(|&node| depth[node])?;

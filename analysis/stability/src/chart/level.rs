@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::grid_continuation::nearest;
 use super::plane::{Plane, between};
 use super::{Cell, Chart};
-use crate::branch::continuation::{End, OnCurve, follow, root};
+use crate::branch::continuation::{End, OnCurve, both_ways, follow, root};
 use crate::steady::newton::Equations;
 
 /// A function of the unknowns of steady motions.
@@ -135,21 +135,9 @@ impl Level<'_> {
             let end = root.and_then(|z| OnCurve::new(self, z, &a.tangent));
             Some((end, End::Range))
         };
-        let (forward, last) = follow(self, start, MOST_POINTS, longest, limit);
-        let (mut points, ends) = if last == End::Closed {
-            (Vec::new(), [last; 2])
-        } else {
-            let mut back = start.clone();
-            back.tangent.neg_mut();
-            let (mut points, first) = follow(self, &back, MOST_POINTS, longest, limit);
-            for point in &mut points {
-                point.tangent.neg_mut();
-            }
-            points.reverse();
-            (points, [first, last])
-        };
-        points.push(start.clone());
-        points.extend(forward);
+        let (points, ends) = both_ways(start, |start| {
+            follow(self, start, MOST_POINTS, longest, limit)
+        });
         Curve {
             places: points.iter().map(|at| plane.coordinates(&at.z)).collect(),
             points,

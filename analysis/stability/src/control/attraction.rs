@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use rayon::iter::{IndexedParallelIterator as _, IntoParallelIterator as _, ParallelIterator as _};
+
 use appell_runtime::inputs::InputSource;
 use appell_runtime::model::Model;
 use appell_runtime::simulate::{Simulation, SimulationError};
@@ -48,16 +50,6 @@ pub struct Region<'a> {
     pub settled: &'a (dyn Fn(&Trajectory) -> bool + Sync),
 }
 
-impl std::fmt::Debug for Region<'_> {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .debug_struct("Region")
-            .field("model", &self.model.info().name)
-            .field("axes", &self.axes)
-            .finish_non_exhaustive()
-    }
-}
-
 /// The outcomes of all motions of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fates {
@@ -74,36 +66,21 @@ impl Region<'_> {
     /// number of finished motions, from any thread.
     pub fn explore(&self, progress: &(dyn Fn(usize) + Sync)) -> Result<Fates, SimulationError> {
         let count: usize = self.axes.iter().map(|axis| axis.values.len()).product();
-        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let work = || {
-            let mut found = Vec::new();
-            loop {
-                let point = next.fetch_add(1, Ordering::Relaxed);
-                if point >= count {
-                    return found;
-                }
-                found.push((point, self.fate(point)));
-                progress(done.fetch_add(1, Ordering::Relaxed) + 1);
-            }
+        let done = AtomicUsize::new(0);
+        let fate = |point| {
+            let fate = self.fate(point);
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+            fate
         };
-        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let mut found: Vec<(usize, Result<Fate, SimulationError>)> = std::thread::scope(|scope| {
-            let workers: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
-            let mut found = work();
-            for worker in workers {
-                let joined = worker.join();
-                found.extend(joined.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-            }
-            found
-        });
-        found.sort_by_key(|(point, _)| *point);
-        let fates = found.into_iter().map(|(_, fate)| fate);
+        // Motions take different times.
+        let points = (0..count).into_par_iter().with_max_len(1);
+        let fates: Vec<Result<Fate, SimulationError>> = points.map(fate).collect();
         let states = self.axes.iter().map(|axis| self.state.get(axis.state));
         let centre = states.map(|state| state.copied().unwrap_or(f64::NAN));
         Ok(Fates {
             axes: self.axes.clone(),
             centre: centre.collect(),
-            fates: fates.collect::<Result<_, _>>()?,
+            fates: fates.into_iter().collect::<Result<_, _>>()?,
         })
     }
 

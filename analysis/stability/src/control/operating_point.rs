@@ -98,18 +98,6 @@ pub enum OperatingPointError {
     Signal(#[from] SignalError),
 }
 
-impl std::fmt::Debug for OperatingPoint<'_> {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .debug_struct("OperatingPoint")
-            .field("model", &self.model.info().name)
-            .field("x", &self.x)
-            .field("u", &self.u)
-            .field("p", &self.p)
-            .finish()
-    }
-}
-
 impl<'a> OperatingPoint<'a> {
     /// The initial state and the parameters of the spec, inputs zero.
     pub fn new(model: &'a dyn Model) -> Self {
@@ -206,19 +194,13 @@ impl<'a> OperatingPoint<'a> {
         let n = rates.len();
         let u = self.inputs_at(0.0)?;
         let (x, p) = (self.x.clone(), self.p.clone());
-        let none = || (DMatrix::zeros(n, n), rates.to_vec());
-        if self.model.dependent_coordinates().is_empty() {
-            return Ok(none());
-        }
         // Equations that depend on time have no symmetric rotations here.
-        let structure = Structure::of(self.model, &Point { x, u, p });
-        Ok(structure.map_or_else(
-            |_| none(),
-            |structure| {
-                let turning = structure.turning;
-                (turning.turn(&self.x, rates), turning.still(&self.x, rates))
-            },
-        ))
+        if !self.model.dependent_coordinates().is_empty()
+            && let Ok(Structure { turning, .. }) = Structure::of(self.model, &Point { x, u, p })
+        {
+            return Ok((turning.turn(&self.x, rates), turning.still(&self.x, rates)));
+        }
+        Ok((DMatrix::zeros(n, n), rates.to_vec()))
     }
 
     fn check(&self) -> Result<(), OperatingPointError> {

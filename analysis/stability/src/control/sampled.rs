@@ -7,10 +7,8 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::LinearSystem;
-use super::lqr::{self, Regulator};
-use super::placement::{Placement, PlacementError};
-use super::riccati::RiccatiError;
-use super::robust_placement;
+use super::lqr::{self, Regulator, RiccatiError};
+use super::placement::{self, Placement, PlacementError};
 
 /// Longest delay in sampling periods.
 const MOST_PENDING: usize = 100;
@@ -135,7 +133,7 @@ impl Sampling {
         let sampled = self.discretise(system);
         let mut poles: Vec<_> = poles.iter().map(|pole| self.pole(*pole)).collect();
         poles.resize(sampled.order(), 0.0.into());
-        robust_placement::place(&sampled, &poles)
+        placement::place(&sampled, &poles)
     }
 
     /// Gains that minimise Σ (yᵀ Q y + uᵀ R u) T over the measurements; Q and R are of the order and

@@ -46,11 +46,8 @@ pub enum ScheduleError {
         after: f64,
     },
     /// Laws of different dimensions.
-    #[error("the law at {value} has other inputs or states than the first")]
-    Shape {
-        /// Where.
-        value: f64,
-    },
+    #[error("the law at {0} has other inputs or states than the first")]
+    Shape(f64),
 }
 
 impl GainSchedule {
@@ -60,9 +57,7 @@ impl GainSchedule {
         let first = laws.first().ok_or(ScheduleError::Empty)?;
         let shape = |law: &OperatingLaw| (law.gain.shape(), law.states.len(), law.inputs.len());
         if let Some(place) = laws.iter().position(|law| shape(law) != shape(first)) {
-            return Err(ScheduleError::Shape {
-                value: values[place],
-            });
+            return Err(ScheduleError::Shape(values[place]));
         }
         let ordered = |pair: &&[f64]| pair[0].is_nan() || pair[1].is_nan() || pair[0] >= pair[1];
         if let Some(pair) = values.windows(2).find(ordered) {

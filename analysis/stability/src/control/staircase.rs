@@ -140,7 +140,6 @@ impl Staircase {
 /// What drives the rows that are being compressed.
 #[derive(Debug, Clone, Copy)]
 enum From {
-    /// The inputs.
     Inputs,
     /// The states of the stair above, which begins here.
     States(usize),

@@ -50,8 +50,8 @@ impl Structure {
             return Err(StructureError::DependsOnTime);
         }
         let n = info.state_len();
-        let samples = samples(model, point)?;
-        let depends = dependence(model, point, &samples.all);
+        let (samples, quaternions) = samples(model, point)?;
+        let depends = dependence(model, point, &samples);
         let mut essential: Vec<bool> = (0..n).map(|state| state < info.speeds).collect();
         while let Some(next) = (0..n).find(|&state| {
             let needed = |other: usize| essential[other] && depends[other * n + state];
@@ -59,15 +59,15 @@ impl Structure {
         }) {
             essential[next] = true;
         }
-        let quaternions = samples.quaternions.iter().flatten();
+        let components = quaternions.iter().flatten();
         let felt: Vec<usize> = (0..n)
-            .filter(|state| essential[*state] || quaternions.clone().any(|e| e == state))
+            .filter(|state| essential[*state] || components.clone().any(|e| e == state))
             .collect();
-        let turning = Turning::of(samples.quaternions, &samples.all, &felt);
+        let turning = Turning::of(quaternions, &samples, &felt);
         let (essential, ignorable): (Vec<usize>, Vec<usize>) = (0..n).partition(|&s| essential[s]);
         let alone = |&&state: &&usize| {
             let free = !ignorable.iter().any(|&other| depends[state * n + other]);
-            free && turning.keeps(&samples.all, state)
+            free && turning.keeps(&samples, state)
         };
         let uniform = ignorable.iter().filter(alone).copied().collect();
         Ok(Self {
@@ -101,12 +101,10 @@ impl Structure {
 }
 
 /// The model at several states, and its quaternions.
-struct Samples {
-    all: Vec<Sample>,
-    quaternions: Vec<[usize; 4]>,
-}
-
-fn samples(model: &dyn Model, point: &Point) -> Result<Samples, StructureError> {
+fn samples(
+    model: &dyn Model,
+    point: &Point,
+) -> Result<(Vec<Sample>, Vec<[usize; 4]>), StructureError> {
     let info = model.info();
     let (n, m) = (info.state_len(), info.input_len());
     let mut b = vec![0.0; n * m];
@@ -133,10 +131,7 @@ fn samples(model: &dyn Model, point: &Point) -> Result<Samples, StructureError> 
     if all.is_empty() {
         return Err(StructureError::NotFinite);
     }
-    Ok(Samples {
-        all,
-        quaternions: found,
-    })
+    Ok((all, found))
 }
 
 /// Whether the rate of the row's state depends on the column's; a coordinate that follows from

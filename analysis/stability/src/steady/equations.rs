@@ -3,10 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Condition;
 use super::cyclic::Structure;
-use super::differences;
 use super::newton::Equations;
+use super::{Condition, differences};
 use crate::point::Point;
 use crate::term::Term;
 use appell_runtime::model::Model;
@@ -54,7 +53,6 @@ impl<'a> SteadyEquations<'a> {
         }
     }
 
-    /// The unknowns of a point.
     pub(crate) fn unknowns_of(&self, point: &Point) -> DVector<f64> {
         let scaled = |(term, scale): (&Term, &f64)| term.value(self.model, point) / scale;
         let values = self.unknowns.iter().zip(&self.scales).map(scaled);

@@ -10,19 +10,13 @@ pub enum SteadyError {
     #[error(transparent)]
     Structure(#[from] StructureError),
     /// A term that the model does not have.
-    #[error("the model has no quantity {term:?}")]
-    Unknown {
-        /// The term.
-        term: Term,
-    },
+    #[error("the model has no quantity {0:?}")]
+    Unknown(Term),
     /// An ignorable state has no value in a steady motion.
     #[error(
-        "`{name}` is ignorable: the motion does not depend on its value; prescribe its rate, `{name}_dot`"
+        "`{0}` is ignorable: the motion does not depend on its value; prescribe its rate, `{0}_dot`"
     )]
-    Ignorable {
-        /// The state.
-        name: String,
-    },
+    Ignorable(String),
     /// A component of a quaternion that turns.
     #[error(
         "`{name}` is not constant in a steady motion, as its quaternion turns; prescribe {instead}, or declare an \
@@ -45,11 +39,8 @@ pub enum SteadyError {
         instead: String,
     },
     /// The rate of an essential state.
-    #[error("`{name}` is zero in every steady motion and cannot be prescribed")]
-    Zero {
-        /// The quantity.
-        name: String,
-    },
+    #[error("`{0}` is zero in every steady motion and cannot be prescribed")]
+    Zero(String),
     /// Only inputs and parameters can be left free.
     #[error("`{name}` cannot be left free: {reason}")]
     NotFree {

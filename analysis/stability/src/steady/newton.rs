@@ -29,7 +29,6 @@ const FAMILY_RANK: f64 = 1e-8;
 /// Initial damping, and the damping at which the search fails.
 const DAMPING: [f64; 2] = [1e-2, 1e12];
 
-/// A zero.
 #[derive(Debug, Clone)]
 pub(crate) struct Zero {
     pub(crate) z: DVector<f64>,

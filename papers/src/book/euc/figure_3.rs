@@ -5,8 +5,7 @@ use appell_report::figure::{Path, Series, Surface};
 
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
-use crate::book::drawing::{line, paths};
-use crate::book::{Part, Result, Section, failed};
+use crate::book::{Part, Result, Section, failed, line, paths};
 
 /// The capture volume of the paper in m.
 const VOLUME: [f64; 3] = [6.0, 4.0, 2.0];

@@ -1,14 +1,13 @@
 //! Figures 6 and 7: processed data of decelerations and of a figure-eight.
 
 use appell_recordings::motion_capture::Smoothed;
-use appell_report::figure::Figure;
+use appell_report::figure::{Figure, Panel};
 
 use super::laboratory::{Laboratory, Session};
 use super::rider::Manoeuvre;
-use super::simulated::simulated;
-use super::torque::{Curve, Planar, Torques};
-use crate::book::drawing::{figure, line, panel};
-use crate::book::{Part, Result, Section, failed};
+use super::simulated;
+use super::torque::{Curve, Planar};
+use crate::book::{Part, Result, Section, failed, line};
 
 /// Channels of the smoothed rides: pitch of the body and of the rider.
 const GAMMA: usize = 1;
@@ -47,7 +46,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section> {
         let title = format!("{capitalised}: {}", manoeuvre.name());
         part.set("Figure", capitalised);
         let torques = three.torques(&session.by_3, 0, height, 1)?;
-        let figure = processed(&title, session, torques);
+        let figure = processed(&title, session, &torques);
         part.picture("data", figure.to_svg())?;
     }
     braking(&mut part, laboratory)?;
@@ -88,8 +87,7 @@ fn torque_off(planar: Planar, session: &Session, height: f64) -> Result<f64> {
     for (run, motion) in session.motions.iter().enumerate() {
         let found = planar.torques(&session.by_3, run, height, 1)?;
         let truth = motion.column("M_d").ok_or_else(|| failed("no torque"))?;
-        let pairs = found.first.iter().zip(&found.second);
-        for ((first, second), truth) in pairs.zip(&truth) {
+        for ([first, second], truth) in found.iter().zip(&truth) {
             squares += (0.5 * (first + second) - truth).powi(2);
             count += 1;
         }
@@ -98,7 +96,7 @@ fn torque_off(planar: Planar, session: &Session, height: f64) -> Result<f64> {
 }
 
 /// Angles of all runs, and the driving torque of the first.
-fn processed(title: &str, session: &Session, torques: Torques) -> Figure {
+fn processed(title: &str, session: &Session, torques: &[[f64; 2]]) -> Figure {
     let times = |run: usize| session.by_3.rides[run].times.clone();
     let runs = || session.by_3.smoothed.iter().enumerate();
     let angle = |letter: &str, of: &dyn Fn(&Smoothed) -> Vec<f64>| {
@@ -107,21 +105,18 @@ fn processed(title: &str, session: &Session, torques: Torques) -> Figure {
             let label = if run == 0 { letter } else { "" };
             line(label, times(run), degrees.collect())
         });
-        panel("deg", series.collect())
+        Panel::new("deg", series.collect())
     };
     let truth = session.motions[0].column("M_d").unwrap_or_default();
-    let torques = [
-        ("M_d,1", torques.first),
-        ("M_d,2", torques.second),
-        ("true", truth),
-    ]
-    .map(|(label, torque)| line(label, times(0), torque));
+    let [first, second] = [0, 1].map(|k| torques.iter().map(|pair| pair[k]).collect());
+    let torques = [("M_d,1", first), ("M_d,2", second), ("true", truth)]
+        .map(|(label, torque)| line(label, times(0), torque));
     let panels = vec![
         angle("ψ", &|run| run.angles[0].derivative(0)),
         angle("ϑ", &|run| run.angles[1].derivative(0)),
         angle("γ", &|run| run.channels[GAMMA].derivative(0)),
         angle("ϕ", &|run| run.channels[PHI].derivative(0)),
-        panel("N m", torques.to_vec()),
+        Panel::new("N m", torques.to_vec()),
     ];
-    figure(title, "t [s]", panels)
+    Figure::new(title, "t [s]", panels)
 }

@@ -2,10 +2,10 @@
 
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
-use super::simulated::simulated;
+use super::simulated;
 use super::torque::{Curve, Planar};
-use crate::book::drawing::{figure, line, panel};
-use crate::book::{Part, Result, Section};
+use crate::book::{Part, Result, Section, line};
+use appell_report::figure::{Figure, Panel};
 
 /// The curves of a manoeuvre: three and two degrees of freedom.
 struct Curves {
@@ -52,9 +52,9 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section> {
             let label = format!("{}, {name}", set.manoeuvre.name());
             line(&label, curve.heights.clone(), curve.errors.clone())
         });
-        panel("N m", lines.to_vec())
+        Panel::new("N m", lines.to_vec())
     });
-    let figure = figure("RMSE between M_d,1 and M_d,2", "h [m]", panels.collect());
+    let figure = Figure::new("RMSE between M_d,1 and M_d,2", "h [m]", panels.collect());
     part.picture("curves", figure.to_svg())?;
     Ok(part.section())
 }

@@ -6,15 +6,14 @@ use appell_codegen::program::FunctionKind;
 use appell_estimate::HALF_WIDTH_95;
 use appell_estimate::inverse::{Consistency, Found, Record, Relations, Sought, Track};
 use appell_recordings::motion_capture::{Capture, Ride};
-use appell_report::figure::Figure;
+use appell_report::figure::{Figure, Panel};
 use appell_runtime::model::Model;
 use nalgebra::DMatrix;
 
 use super::laboratory::{Laboratory, PERFECT, REAL, Session};
 use super::rider::Manoeuvre;
-use super::simulated::simulated;
-use crate::book::drawing::{figure, line, panel};
-use crate::book::{Part, Result, Section, computation, failed, parameter, shipped};
+use super::simulated;
+use crate::book::{Part, Result, Section, computation, failed, line, parameter, shipped};
 
 /// Heights of the profiles, relative to the estimate.
 const PROFILE: [f64; 9] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5];
@@ -158,8 +157,8 @@ fn profiles(estimates: &[Estimate], laboratory: &Laboratory) -> Figure {
         let cost = |cost: &f64| 2.0 * (cost - estimate.found.cost);
         let costs = estimate.profile.iter().map(cost).collect();
         let name = estimate.manoeuvre.name();
-        panel("", vec![line(name, heights(&estimate.found), costs)])
+        Panel::new("", vec![line(name, heights(&estimate.found), costs)])
     });
     let title = format!("Heights beside the true one of {:.3} m", laboratory.height);
-    figure(&title, "h [m]", panels.collect())
+    Figure::new(&title, "h [m]", panels.collect())
 }

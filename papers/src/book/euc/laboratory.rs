@@ -3,8 +3,7 @@
 use appell_recordings::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
 use appell_runtime::Trajectory;
 
-use super::capture::{Captured, Imperfection};
-use super::random::Random;
+use super::capture::{Captured, Imperfection, Random};
 use super::rider::{Manoeuvre, Rider};
 use crate::book::{Result, computation, edited, failed, parameter};
 

@@ -4,8 +4,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use super::capture::Random;
 use super::laboratory::{Laboratory, Session};
-use super::random::Random;
 use super::rider::{RATE, SPATIAL, TWIST};
 use crate::book::{Result, edited, shipped};
 use appell::files;

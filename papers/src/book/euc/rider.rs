@@ -13,7 +13,7 @@ use appell_runtime::simulate::Sampling;
 use appell_runtime::{Simulation, Trajectory};
 use nalgebra::{DMatrix, DVector};
 
-use super::random::Random;
+use super::capture::Random;
 use crate::book::{Result, computation, edited, parameter, rows, shipped, state};
 
 /// Frames a second of the capture.
@@ -53,7 +53,6 @@ const SWAY: [f64; 2] = [3.0, 2.0];
 /// Angular frequencies of sways in rad/s.
 const FREQUENCIES: [f64; 4] = [2.0, 3.3, 5.0, 7.5];
 
-/// A manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Manoeuvre {
     ConstantSpeed,

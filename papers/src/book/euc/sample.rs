@@ -5,9 +5,8 @@ use std::path::Path;
 
 use appell_recordings::motion_capture::{Capture, Skeleton};
 
-use super::capture::{Captured, Imperfection};
+use super::capture::{Captured, Imperfection, Random};
 use super::laboratory::SKELETON;
-use super::random::Random;
 use super::rider::{Manoeuvre, Rider};
 use crate::book::Result;
 use appell::sample;

@@ -15,12 +15,6 @@ pub(super) struct Planar {
     pub(super) name: &'static str,
 }
 
-/// The torque of a run from two sets of equations.
-pub(super) struct Torques {
-    pub(super) first: Vec<f64>,
-    pub(super) second: Vec<f64>,
-}
-
 impl Planar {
     /// The models with three and with two degrees of freedom.
     pub(super) fn both() -> Result<[Self; 2]> {
@@ -31,23 +25,20 @@ impl Planar {
         Ok([planar("euc_3dof", "3 DoF")?, planar("euc_2dof", "2 DoF")?])
     }
 
-    /// (9) and (10), or (13), at every so many frames of a run.
+    /// The torque of a run from both sets of equations, (9) and (10) or (13), at every so many frames.
     pub(super) fn torques(
         self,
         view: &View,
         run: usize,
         height: f64,
         every: usize,
-    ) -> Result<Torques> {
+    ) -> Result<Vec<[f64; 2]>> {
         let info = self.model.info();
         let mut p = info.default_parameters();
         p[parameter(info, "h")?] = height;
         let smoothed = &view.smoothed[run];
-        let mut torques = Torques {
-            first: Vec::new(),
-            second: Vec::new(),
-        };
-        for row in (0..view.rides[run].times.len()).step_by(every) {
+        let rows = (0..view.rides[run].times.len()).step_by(every);
+        let torques = rows.map(|row| {
             let [gamma, phi] = [1, 2].map(|channel| smoothed.channels[channel].at(row));
             let [forward, ..] = smoothed.acceleration[row];
             let measured = [
@@ -57,11 +48,9 @@ impl Planar {
                 ("phi_dot", phi[1]),
             ];
             let accelerations = [("v", forward), ("gamma_dot", gamma[2]), ("phi_dot", phi[2])];
-            let [first, second] = self.at(&measured, &accelerations, &p)?;
-            torques.first.push(first);
-            torques.second.push(second);
-        }
-        Ok(torques)
+            self.at(&measured, &accelerations, &p)
+        });
+        torques.collect()
     }
 
     /// Both torques from the measured states and accelerations.
@@ -110,9 +99,8 @@ impl Planar {
         let (mut squares, mut count) = (0.0, 0);
         for run in 0..view.rides.len() {
             let torques = self.torques(view, run, height, EVERY)?;
-            let pairs = torques.first.iter().zip(&torques.second);
-            squares += pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-            count += torques.first.len();
+            squares += torques.iter().map(|[a, b]| (a - b).powi(2)).sum::<f64>();
+            count += torques.len();
         }
         Ok((squares / count as f64).sqrt())
     }

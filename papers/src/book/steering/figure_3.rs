@@ -4,10 +4,9 @@ use appell_analysis::{Cell, Chart, Kind, Verdict};
 use appell_report::figure::{Curve, Map, Patch, Stroke, Surface};
 
 use crate::book::claim::digits;
-use crate::book::drawing::line;
 use crate::book::equations::misprint;
 use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, degrees, shown};
-use crate::book::{Part, Result, Section};
+use crate::book::{Part, Result, Section, line};
 use crate::errata::{ERRATA, Erratum};
 use appell::steady::regions;
 

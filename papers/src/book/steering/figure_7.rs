@@ -4,9 +4,8 @@ use appell_analysis::{Branch, loci};
 use appell_report::figure::{Figure, Mark, Panel, Series};
 use appell_spectra::spectrum::Complex;
 
-use crate::book::drawing::{figure, line, panel};
 use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, first_critical};
-use crate::book::{Part, Result, Section};
+use crate::book::{Part, Result, Section, line};
 
 /// Pitch rates that are drawn, in rad/s.
 const RANGE: [f64; 2] = [0.05, 8.0];
@@ -35,7 +34,7 @@ pub(super) fn section(_: usize) -> Result<Section> {
             mark(first, "the wheel stands up: √(g/(3R))"),
             mark(second, "the unicycle stands up: √(g/(2R))"),
         ],
-        ..figure(
+        ..Figure::new(
             "Characteristic roots of straight rolling",
             "φ̇ [rad/s]",
             vec![
@@ -107,5 +106,5 @@ fn parts(
             })
             .collect()
     };
-    panel("1/s", [lines(wheel, "wheel"), lines(unicycle, "")].concat())
+    Panel::new("1/s", [lines(wheel, "wheel"), lines(unicycle, "")].concat())
 }

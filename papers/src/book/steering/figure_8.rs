@@ -1,12 +1,11 @@
 //! Figure 8: lane change and right turn, below and above the critical speed.
 
-use appell_report::figure::{Figure, Series};
+use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::Trajectory;
 
 use super::manoeuvres::{Path, Run, largest};
-use crate::book::drawing::{figure, line, panel, paths};
 use crate::book::steady_motions::degrees;
-use crate::book::{Part, Result, Section, failed};
+use crate::book::{Part, Result, Section, failed, line, paths};
 
 /// A run: manoeuvre, final place and yaw angle to nine digits, largest force.
 struct Wanted {
@@ -118,7 +117,7 @@ fn over_time(title: &str, pair: &[Ridden]) -> Figure {
                 degrees(name, desired),
             ));
         }
-        panel(unit, series)
+        Panel::new(unit, series)
     };
     let panels = vec![
         over("theta", "ϑ", "deg"),
@@ -126,7 +125,7 @@ fn over_time(title: &str, pair: &[Ridden]) -> Figure {
         over("psi", "ψ", "deg"),
         over("u", "u", "N"),
     ];
-    figure(title, "t [s]", panels)
+    Figure::new(title, "t [s]", panels)
 }
 
 fn from_above(title: &str, pair: &[Ridden]) -> Figure {

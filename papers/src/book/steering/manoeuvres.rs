@@ -79,7 +79,6 @@ impl Path {
 /// A closed loop with the gains of one speed, run at another.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
-    /// The path.
     pub(super) path: Path,
     /// Speed of the gains in m/s.
     pub(super) gains_at: f64,

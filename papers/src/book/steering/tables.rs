@@ -3,8 +3,8 @@
 use crate::book::{Part, Result, Section, computation, rows, state};
 use crate::steering::{GAINS, MISPRINT, OUTPUTS};
 use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
+use appell_analysis::control::placement;
 use appell_analysis::control::reduction::{Subsystem, reduce};
-use appell_analysis::control::robust_placement;
 use nalgebra::{Complex, DMatrix};
 
 use crate::book::claim::shown;
@@ -20,14 +20,6 @@ const LETTERS: [(&str, &str); 6] = [
     ("P_r", "N/m"),
     ("P_ψ", "N"),
     ("P_y", "N/m"),
-];
-
-/// Table I: letter in the spec, unit, value.
-const PARAMETERS: [(&str, &str, f64); 4] = [
-    ("m", " kg", 10.0),
-    ("m0", " kg", 5.0),
-    ("R", " m", 0.3),
-    ("g", " m/s²", 9.81),
 ];
 
 /// The linearised unicycle in straight rolling at a speed in m/s, and indices of the outputs among
@@ -53,15 +45,14 @@ pub(super) fn steered(speed: f64, outputs: &[&str]) -> Result<Subsystem> {
 /// Gains that place all poles of the outputs.
 pub(super) fn placed(speed: f64, outputs: &[&str]) -> Result<DMatrix<f64>> {
     let poles = vec![Complex::from(POLE); outputs.len()];
-    let placed = robust_placement::place(&steered(speed, outputs)?.system, &poles);
+    let placed = placement::place(&steered(speed, outputs)?.system, &poles);
     Ok(placed.map_err(computation)?.gain)
 }
 
 /// The tables.
 pub(super) fn section(_: usize) -> Result<Section> {
     let mut part = Part::read(include_str!("tables.toml"))?;
-    let info = Mechanism::shipped("unicycle")?.0.info();
-    part.parameters(info, &PARAMETERS)?;
+    part.parameters(Mechanism::shipped("unicycle")?.0.info())?;
     for column in GAINS.iter() {
         let outputs = &OUTPUTS[..column.printed.len()];
         part.set("table", &column.table);

@@ -1,15 +1,19 @@
-//! Constraints, pseudo-velocities, and the generalised velocities that solve both.
+//! Constraints, pseudo-velocities, the generalised velocities that solve both and where they do; constraint forces.
 
+use appell_codegen::mechanics::expressions::Setting;
+use appell_codegen::mechanics::finding::Outcome;
+use appell_codegen::mechanics::reactions::reactions;
+use appell_codegen::mechanics::{parameter_ranges, row};
+use appell_codegen::symbolic::{Expr, Graph, Intervals, Node};
 use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, GROUND};
 
-use super::super::units::unit;
+use super::super::lexicon::AXES;
 use super::super::{About, Block, Equation, Letter, Math, Row, Section, Span, Writer};
-use super::divisors;
 use super::phrases::{
     described, equality, headed, introduced, listed, math, sentence, table, with, words,
 };
 use super::placement::{from_to, lowered};
-use appell_codegen::mechanics::row;
+use super::quantities::{range, unit};
 
 /// Constraints and pseudo-velocities.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
@@ -32,7 +36,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     };
     let equations = rates(w);
     blocks.extend(with(w, by, equations));
-    blocks.extend(divisors::conditions(w));
+    blocks.extend(conditions(w));
     if !w.derivation.velocities.solved_numerically.is_empty() {
         blocks.push(sentence(
             "No pivot of the linear system is nonzero in all declared ranges: it is solved with pivoting \
@@ -167,4 +171,99 @@ fn definitions(w: &mut Writer<'_>) -> Vec<Row> {
         described(&speed.label, equality(left, right), unit(&speed.label))
     });
     rows.collect()
+}
+
+/// `They are valid where cos θ ≠ 0; the spec declares θ from -1.5 to 1.5 rad.`
+pub(super) fn conditions(w: &mut Writer<'_>) -> Option<Block> {
+    let divisors = divisors(w);
+    if divisors.is_empty() {
+        return None;
+    }
+    let conditions = divisors.iter().map(|&divisor| {
+        let condition = [w.set(divisor), Math::Sign("≠"), Math::zero()];
+        vec![math(Math::Row(condition.into()))]
+    });
+    let mut what = vec![words("They are valid where ")];
+    what.extend(listed(conditions.collect()));
+    let declared = declared(w, &divisors);
+    if !declared.is_empty() {
+        what.push(words("; the spec declares "));
+        what.extend(listed(declared));
+    }
+    what.push(words("."));
+    Some(Block::Sentence(what))
+}
+
+/// Divisors that have zeros.
+fn divisors(w: &Writer<'_>) -> Vec<Expr> {
+    let graph = &w.derivation.algebra.graph;
+    let parameters = parameter_ranges(graph, w.mechanism, &w.derivation.symbols);
+    let mut anywhere = Intervals::new(graph, parameters);
+    let mut divisors = Vec::new();
+    for part in graph.in_order(&w.derivation.velocities.rates) {
+        let Node::Product(factors) = graph.node(part) else {
+            continue;
+        };
+        for factor in factors.iter().filter(|f| f.exponent < 0) {
+            if !anywhere.cannot_vanish(graph, factor.base) && !divisors.contains(&factor.base) {
+                divisors.push(factor.base);
+            }
+        }
+    }
+    divisors
+}
+
+/// Declared ranges of the coordinates in the divisors.
+fn declared(w: &Writer<'_>, divisors: &[Expr]) -> Vec<Vec<Span>> {
+    let graph = &w.derivation.algebra.graph;
+    let coordinates = w.derivation.symbols.coordinates.iter();
+    let mut declared = Vec::new();
+    for (&symbol, q) in coordinates.zip(&w.mechanism.coordinates) {
+        let (Some(id), Some(ends)) = (graph.as_symbol(symbol), q.range) else {
+            continue;
+        };
+        if divisors.iter().any(|&d| graph.mentions(d, &[id])) {
+            let letter = Math::Letter(Letter::of(&q.label.name));
+            let ends = words(&format!(" from {}", range(&q.label, ends)));
+            declared.push(vec![math(letter), ends]);
+        }
+    }
+    declared
+}
+
+/// The reaction of every constraint; none without constraints.
+pub(super) fn forces(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
+    let d = &mut *w.derivation;
+    let forces = reactions(
+        &mut d.algebra,
+        Setting::free(w.mechanism, &d.symbols),
+        &d.constraints,
+        &d.velocities.violating,
+        &d.bodies,
+        &d.motion.accelerations,
+        &d.reactions_in_loads,
+    )?;
+    if forces.is_empty() {
+        return Ok(None);
+    }
+    let mut equations = Vec::new();
+    let places = w.derivation.constraints.reactions.clone();
+    for (place, force) in places.iter().zip(forces) {
+        for (component, axis) in force.into_iter().zip(AXES) {
+            let component = w.derivation.algebra.shortest(component);
+            if component == Graph::ZERO {
+                continue;
+            }
+            let left = Letter::plain("F").below(&place.name).below(axis);
+            let right = w.explicit(component);
+            equations.push(Equation::new(Math::Letter(left), right));
+        }
+    }
+    let blocks = with(
+        w,
+        "Each constraint row gets an auxiliary speed that violates it; Appell's equation for that \
+         speed gives its reaction. Components are in the ground; accelerations are those solved above:",
+        equations,
+    );
+    Ok(Some(headed("Constraint forces", blocks)))
 }

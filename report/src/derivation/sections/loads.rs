@@ -1,16 +1,20 @@
-//! A load: its vector, frame, point of application, reaction, and virtual power.
+//! Loads: vector, frame, point of application, reaction, virtual power; the pseudo-forces of all of them.
 
+use appell_codegen::mechanics::expressions::Setting;
+use appell_codegen::mechanics::loads::{AppliedLoad, generalized_forces};
+use appell_codegen::symbolic::{Expr, Graph};
 use appell_spec::expr::{Expr as Spec, ExprKind, Quantity};
 use appell_spec::mechanism::{
     BodyId, Connection, CoordinateId, FrameId, GROUND, Load, LoadKind, PointId, Spring,
 };
 
-use super::super::writer::Writer;
-use super::super::{Letter, Math, Span};
-use super::phrases::{equality, listed, math, words};
+use super::super::arrange::signed;
+use super::super::{About, Block, Equation, Letter, Math, Section, Span, Writer};
+use super::energy::numbered;
+use super::phrases::{
+    equality, formula, headed, introduced, listed, math, sentence, with, with_formulas, words,
+};
 use super::placement::{from_to, lowered};
-use appell_codegen::mechanics::expressions::Setting;
-use appell_codegen::symbolic::{Expr, Graph};
 
 /// `F_drive = [0, u, 0] tilted at A, −F_drive at G; δP_drive = F_drive · (δv_A − δv_G)`
 pub(super) fn statement(w: &mut Writer<'_>, load: &Load) -> Vec<Span> {
@@ -211,45 +215,33 @@ fn pulling(w: &Writer<'_>, load: &Load, ends: [PointId; 2], tension: Math) -> Sa
 
 /// A generalised force on a coordinate.
 fn along(w: &mut Writer<'_>, load: &Load, q: CoordinateId, force: Math) -> Said {
-    let letter = Math::Letter(Letter::plain("F").below(&load.name));
-    let [coordinate, rate] = [
-        w.derivation.symbols.coordinates[q.index()],
-        w.derivation.symbols.rates[q.index()],
-    ]
-    .map(|symbol| w.letter(symbol));
-    let what = vec![
-        equality(letter.clone(), force),
-        words(" along "),
-        math(Math::Letter(coordinate)),
-    ];
-    (
-        what,
-        Math::Row(vec![letter, Math::Letter(rate.before('δ'))]),
-    )
+    let symbols = &w.derivation.symbols;
+    let [coordinate, rate] = [symbols.coordinates[q.index()], symbols.rates[q.index()]];
+    let coordinate = Math::Letter(w.letter(coordinate));
+    let rate = Math::Letter(w.letter(rate).before('δ'));
+    let (letter, what) = acting(load, "F", force, " along ", coordinate);
+    (what, Math::Row(vec![letter, rate]))
 }
 
 /// A generalised force on a pseudo-velocity, or on a combination of velocities.
 fn along_velocity(w: &mut Writer<'_>, load: &Load, velocity: &Spec, force: Math) -> Said {
-    let letter = Math::Letter(Letter::plain("F").below(&load.name));
     let velocity = factor(w, velocity);
-    let what = vec![
-        equality(letter.clone(), force),
-        words(" along "),
-        math(velocity.clone()),
-    ];
+    let (letter, what) = acting(load, "F", force, " along ", velocity.clone());
     (what, Math::Row(vec![letter, velocity]))
 }
 
 /// A torque along an angle between two frames.
 fn along_angle(w: &mut Writer<'_>, load: &Load, angle: Expr, rate: Expr, torque: Math) -> Said {
-    let letter = Math::Letter(Letter::plain("T").below(&load.name));
     let [angle, rate] = [angle, rate].map(|expr| w.set(expr));
-    let what = vec![
-        equality(letter.clone(), torque),
-        words(" along the angle "),
-        math(angle),
-    ];
+    let (letter, what) = acting(load, "T", torque, " along the angle ", angle);
     (what, Math::product(vec![letter, rate]))
+}
+
+/// The letter of a load, and `F_drive = u along x`.
+fn acting(load: &Load, base: &str, force: Math, how: &str, along: Math) -> (Math, Vec<Span>) {
+    let letter = Math::Letter(Letter::plain(base).below(&load.name));
+    let what = vec![equality(letter.clone(), force), words(how), math(along)];
+    (letter, what)
 }
 
 /// `letter = [x, y, z] frame`
@@ -311,4 +303,64 @@ fn difference(w: &mut Writer<'_>, place: Expr, relaxed: &Spec) -> Math {
     let relaxed = lowered(w, relaxed);
     let stretch = w.graph().sub(place, relaxed);
     w.set(stretch)
+}
+
+/// The virtual power of every load, and their sum.
+pub(super) fn section(w: &mut Writer<'_>) -> Section {
+    let mut blocks = load_by_load(w);
+    let mut equations = Vec::new();
+    for (i, force) in w.derivation.forces.clone().into_iter().enumerate() {
+        let right = w.explicit(force);
+        equations.push(Equation::new(numbered("Π", i), right).about(About::Force(i)));
+    }
+    blocks.extend(with(
+        w,
+        "The pseudo-forces are the coefficients of the virtual velocities:",
+        equations,
+    ));
+    headed("Pseudo-forces Π", blocks)
+}
+
+fn load_by_load(w: &mut Writer<'_>) -> Vec<Block> {
+    if w.derivation.loads.is_empty() {
+        return vec![sentence("No load acts.")];
+    }
+    let mut blocks = vec![with_formulas(
+        "The virtual power of the forces F and torques T is {}. Load by load:",
+        [formula("δP = { Σ *F · δ*v } + { Σ *T · δ*ω } = Σ Π_i δω_i")],
+    )];
+    let applied = w.derivation.loads.clone();
+    for (load, (id, item)) in applied.iter().zip(w.mechanism.loads.entries()) {
+        let mut what = vec![introduced(&item.name, &item.about, item.line), words(": ")];
+        what.extend(statement(w, item));
+        what.push(words("."));
+        blocks.extend(w.definitions());
+        blocks.push(Block::Sentence(what));
+        let power = power_of(w, load);
+        let equation = Equation::new(virtual_power(item), power).about(About::Load(id));
+        blocks.extend(with(w, "", vec![equation]));
+    }
+    blocks
+}
+
+/// `Σ Πᵢ δωᵢ` of one load.
+fn power_of(w: &mut Writer<'_>, load: &AppliedLoad) -> Math {
+    let speeds = w.derivation.symbols.speeds.clone();
+    let load = std::slice::from_ref(load);
+    let forces = generalized_forces(&mut w.derivation.algebra, load, &speeds);
+    let mut terms = Vec::new();
+    for (k, force) in forces.into_iter().enumerate() {
+        if force == Graph::ZERO {
+            continue;
+        }
+        let along = Math::Letter(w.speed(k).before('δ'));
+        let (minus, force) = signed(w.explicit(force));
+        let factors = if force.is_integer("1") {
+            vec![along]
+        } else {
+            vec![force, along]
+        };
+        terms.push((minus, Math::product(factors)));
+    }
+    Math::sum(terms)
 }

@@ -1,12 +1,14 @@
-//! Angular velocities of frames and bodies, velocities of points.
+//! Angular velocities of frames and bodies, velocities of points, and their accelerations.
 
 use std::collections::BTreeSet;
 
+use appell_codegen::mechanics::gibbs_appell::along;
+use appell_codegen::symbolic::vector;
+use appell_codegen::symbolic::vector::ZERO;
 use appell_spec::mechanism::{FrameId, GROUND, PointId};
 
 use super::super::{About, Letter, Section, Writer};
-use super::phrases::{about, headed, sentence, with};
-use appell_codegen::symbolic::vector::ZERO;
+use super::phrases::{about, formula, headed, sentence, with, with_formulas};
 
 /// Velocities, each in the frame where it is shortest.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
@@ -65,4 +67,38 @@ fn moving_points(w: &Writer<'_>) -> Vec<PointId> {
         }
     }
     once
+}
+
+/// Accelerations, linear in the pseudo-accelerations.
+pub(super) fn accelerations(w: &mut Writer<'_>) -> Section {
+    let mut equations = Vec::new();
+    let mut shown = Vec::new();
+    let accelerations = w.derivation.symbols.accelerations.clone();
+    let bodies = w.derivation.bodies.clone();
+    for (id, body) in w.mechanism.bodies.ids().zip(bodies) {
+        let centre = w.mechanism.bodies[id].centre;
+        if !shown.contains(&centre) {
+            shown.push(centre);
+            let motion = body.centre;
+            let a = along(w.graph(), motion.bias, &motion.partial, &accelerations);
+            let letter = Letter::bold("a").below(&w.point(centre));
+            let vector = w.vector(letter, a, motion.velocity.frame);
+            equations.extend(about(vector, About::Point(centre)));
+        }
+        if let Some(rotation) = body.rotation
+            && rotation.velocity.v != vector::ZERO
+        {
+            let alpha = along(w.graph(), rotation.bias, &rotation.partial, &accelerations);
+            let letter = Letter::bold("α").below(&body.name);
+            let vector = w.vector(letter, alpha, rotation.velocity.frame);
+            equations.extend(about(vector, About::Body(id)));
+        }
+    }
+    let rule = with_formulas(
+        "In a rotating frame {}, differentiated component by component; angular accelerations likewise.",
+        [formula("*a = *v' + *Ω × *v")],
+    );
+    let mut blocks = vec![rule];
+    blocks.extend(with(w, "", equations));
+    headed("Accelerations", blocks)
 }

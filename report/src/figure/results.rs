@@ -1,6 +1,7 @@
-//! Branches of steady motions and their eigenvalues against the continuation parameter.
+//! Figures of results: branches of steady motions, their eigenvalues, inputs computed from recorded motions.
 
 use appell_analysis::{Branch, Term, loci};
+use appell_gap::inverse::Answer;
 use appell_runtime::model::{Model, ModelInfo};
 
 use super::{Figure, Mark, Panel, Series};
@@ -38,10 +39,7 @@ impl Figure {
                 let y = y.map(|value| quantity.to_unit(value)).collect();
                 Series::new(label, &parameter(info, along, branch), y)
             });
-            Panel {
-                unit: quantity.unit.to_string(),
-                series: series.collect(),
-            }
+            Panel::new(quantity.unit.as_ref(), series.collect())
         };
         let panels = terms.iter().filter(drawn).map(panel).collect();
         along_branches(info, along, branches, panels)
@@ -66,10 +64,7 @@ impl Figure {
                 let y = values.map(|value| value.im).collect();
                 im.push(Series::new(label("im"), &x, y));
             }
-            [re, im].map(|series| Panel {
-                unit: "1/s".to_owned(),
-                series,
-            })
+            [re, im].map(|series| Panel::new("1/s", series))
         });
         along_branches(info, along, branches, panels.collect())
     }
@@ -97,11 +92,34 @@ fn along_branches(
         let about = format!("{} = {x:.14} {}", quantity.name, quantity.unit);
         Mark { x, about }
     });
+    let x_label = format!("{} [{}]", quantity.name, quantity.unit);
     Figure {
-        title: info.title.to_string(),
-        x_label: format!("{} [{}]", quantity.name, quantity.unit),
-        panels,
         marks: marks.collect(),
-        equal_axes: false,
+        ..Figure::new(info.title.as_ref(), x_label, panels)
+    }
+}
+
+/// Number of runs drawn.
+const DRAWN_RUNS: usize = 3;
+
+impl Figure {
+    /// The inputs of the first runs, each with its 95 % band.
+    pub fn of_inputs(info: &ModelInfo, answer: &Answer) -> Self {
+        let panels = answer.inputs.iter().take(DRAWN_RUNS).flat_map(|run| {
+            let inputs = info.inputs.iter().take(info.declared_inputs).enumerate();
+            inputs.map(|(input, quantity)| {
+                let name = format!("{}, {}", quantity.name, run.run);
+                let (values, stds) = (&run.values[input], &run.stds[input]);
+                Panel::with_band(
+                    [&name, "95 % from", "to"],
+                    quantity,
+                    &run.times,
+                    values,
+                    stds,
+                )
+            })
+        });
+        let title = format!("{}: inputs of recorded motions", info.name);
+        Self::new(title, "t [s]", panels.collect())
     }
 }

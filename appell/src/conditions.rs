@@ -1,7 +1,6 @@
 //! Conditions of the steady motion about which equations are linearised.
 
 use appell_codegen::mechanics::Derivation;
-use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::symbolic::Expr;
 use appell_spec::Scope;
 use appell_spec::expr::Expr as SpecExpr;
@@ -36,11 +35,8 @@ pub(crate) fn conditions(
 
 /// An expression in the graph of a derivation; `None` if it divides by zero.
 pub(crate) fn lowered(derivation: &mut Derivation, expr: &SpecExpr) -> Option<Expr> {
-    let lowering = Lowering {
-        symbols: &derivation.symbols,
-        rates: &derivation.symbols.rates,
-    };
-    lowering.lower(&mut derivation.algebra.graph, expr).ok()
+    let graph = &mut derivation.algebra.graph;
+    derivation.symbols.lower(graph, expr).ok()
 }
 
 /// Symbol and unit of a state, an input, or a rate: `psi_dot` or `dot(psi)`.

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use appell_codegen::jit::{NativeFunction, Sizes};
-use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
 use appell_codegen::schedule::{pi, schedule};
@@ -37,11 +36,7 @@ impl Workbench {
 
     /// Lowers an expression of the spec language; `None` if it divides by zero.
     pub(crate) fn lower(&mut self, expr: &SpecExpr) -> Option<Expr> {
-        let lowering = Lowering {
-            symbols: &self.symbols,
-            rates: &self.symbols.rates,
-        };
-        lowering.lower(&mut self.graph, expr).ok()
+        self.symbols.lower(&mut self.graph, expr).ok()
     }
 
     /// The rate of a function of time and signals.

@@ -23,6 +23,7 @@ use appell_spec::mechanism::Mechanism;
 use crate::mechanics::Derivation;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::explicit::given_coordinates;
+use crate::mechanics::expressions::Setting;
 use crate::mechanics::finding::Finding;
 use crate::mechanics::symbols::Symbols;
 use crate::symbolic::Graph;
@@ -40,7 +41,8 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
         bench.proposals = ranges::proposals(&mut bench);
     }
     let mut told = Audit::default();
-    let contacts = contact::findings(&mut bench.algebra, mechanism, &derivation.symbols);
+    let free = Setting::free(mechanism, &derivation.symbols);
+    let contacts = contact::findings(&mut bench.algebra, free);
     let is_told = |item| contacts.iter().any(|finding| finding.item == item);
     told.notes = integrability::findings(&mut bench);
     told.notes.retain(|note| !is_told(note.item));
@@ -69,8 +71,9 @@ pub fn reasons(mechanism: &Mechanism, refused: &[Finding]) -> Vec<Finding> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, mechanism, &symbols);
-    algebra.given = given_coordinates(&mut algebra, mechanism, &symbols);
-    contact::findings(&mut algebra, mechanism, &symbols)
+    let free = Setting::free(mechanism, &symbols);
+    algebra.given = given_coordinates(&mut algebra, free);
+    contact::findings(&mut algebra, free)
 }
 
 /// Whether an error may result from the number of velocities that the constraints leave free.

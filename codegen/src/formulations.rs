@@ -19,6 +19,7 @@ mod typed;
 use appell_spec::mechanism::{Constraint, ConstraintKind, Mechanism};
 
 use crate::mechanics::algebra::Algebra;
+use crate::mechanics::expressions::Setting;
 use crate::mechanics::finding::Outcome;
 use crate::mechanics::kinematics::root_of;
 use crate::mechanics::row;
@@ -27,7 +28,7 @@ use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, IdentityTest};
 
 use comparison::Pair;
-use inertial::{Inertial, Row, room};
+use inertial::{Inertial, Row};
 use lagrange::Lagrange;
 use points::Points;
 
@@ -48,8 +49,18 @@ const BY_LAGRANGE: [&str; 2] = ["accelerations", "constraint forces"];
 struct Claim {
     against: Against,
     quantity: &'static str,
-    /// `None` if the time limit was reached before they were derived.
-    pairs: Option<Vec<Pair>>,
+    /// None if the time limit was reached before they were derived.
+    pairs: Vec<Pair>,
+}
+
+impl Claim {
+    fn new(against: Against, quantity: &'static str, pairs: Vec<Pair>) -> Self {
+        Self {
+            against,
+            quantity,
+            pairs,
+        }
+    }
 }
 
 /// Compares a derivation with the other formulations of the same mechanism. Fails if their equations exceed the limit
@@ -68,8 +79,19 @@ pub fn compare_while(
     // A separate graph: the emitted equations do not depend on the comparison.
     let graph = derivation.algebra.graph.clone();
     let mut algebra = Algebra::new(graph, mechanism, symbols);
-    let claims = claims(&mut algebra, mechanism, derivation, is_time)?;
-    Ok(decide(&mut algebra, mechanism, derivation, claims, is_time))
+    let mut judge = Judge::new(mechanism, derivation);
+    let mut comparisons = Vec::new();
+    for claim in claims(&mut algebra, mechanism, derivation, is_time)? {
+        comparisons.push(Comparison {
+            against: claim.against,
+            quantity: claim.quantity,
+            agreement: judge.agreement(&mut algebra, &claim.pairs, is_time),
+        });
+    }
+    Ok(FormulationComparison {
+        comparisons,
+        error_bound: judge.error_bound,
+    })
 }
 
 /// All quantities to be compared.
@@ -91,26 +113,19 @@ fn claims(
     let by_speed = |derived: &[Expr], other: &[Expr]| named(&speeds, derived, other);
 
     let reactions = &derivation.reactions_in_loads;
-    let new = |algebra: &mut Algebra| Inertial::new(algebra, mechanism, symbols, rates, reactions);
-    let allowed = room(algebra, new)?;
-    let definitions = room(algebra, |algebra| allowed.definitions(algebra))?;
-    let rows = room(algebra, |algebra| allowed.rows(algebra))?;
+    let setting = Setting::new(mechanism, symbols, rates);
+    let allowed = Inertial::new(algebra, setting, reactions)?;
+    let definitions = allowed.definitions(algebra)?;
+    let rows = allowed.rows(algebra)?;
     let violated = rows.iter().map(|row| Pair {
         entry: mechanism.constraints[row.constraint].name.clone(),
         derived: row.value,
         other: Graph::ZERO,
     });
+    let defined = by_speed(&symbols.speeds, &definitions);
     let mut claims = vec![
-        Claim {
-            against: Against::Spec,
-            quantity: "pseudo-velocities",
-            pairs: Some(by_speed(&symbols.speeds, &definitions)),
-        },
-        Claim {
-            against: Against::Spec,
-            quantity: "constraints",
-            pairs: Some(violated.collect()),
-        },
+        Claim::new(Against::Spec, "pseudo-velocities", defined),
+        Claim::new(Against::Spec, "constraints", violated.collect()),
     ];
     if !is_time() {
         claims.extend(not_reached(Against::Kane, &BY_KANE));
@@ -132,34 +147,20 @@ fn claims(
         by_speed(&derivation.forces, &kane.forces),
         by_speed(&motion.accelerations, &kane.accelerations),
     ];
-    claims.extend(
-        BY_KANE
-            .into_iter()
-            .zip(by_kane)
-            .map(|(quantity, pairs)| Claim {
-                against: Against::Kane,
-                quantity,
-                pairs: Some(pairs),
-            }),
-    );
+    let by_kane = BY_KANE.into_iter().zip(by_kane);
+    claims.extend(by_kane.map(|(quantity, pairs)| Claim::new(Against::Kane, quantity, pairs)));
     if !is_time() {
         claims.extend(not_reached(Against::Lagrange, &BY_LAGRANGE));
         return Ok(claims);
     }
 
-    let new = |algebra: &mut Algebra| {
-        Inertial::new(algebra, mechanism, symbols, &symbols.rates, reactions)
-    };
-    let unconstrained = room(algebra, new)?;
+    let unconstrained = Inertial::new(algebra, Setting::free(mechanism, symbols), reactions)?;
     let lagrange = lagrange::lagrange(algebra, &unconstrained, rates, &given)?;
     let coordinates = mechanism.coordinates.iter();
     let coordinates: Vec<&str> = coordinates.map(|q| q.label.name.as_str()).collect();
     let accelerations = generalized_accelerations(algebra, &allowed, &motion.accelerations)?;
-    claims.push(Claim {
-        against: Against::Lagrange,
-        quantity: BY_LAGRANGE[0],
-        pairs: Some(named(&coordinates, &accelerations, &lagrange.accelerations)),
-    });
+    let pairs = named(&coordinates, &accelerations, &lagrange.accelerations);
+    claims.push(Claim::new(Against::Lagrange, BY_LAGRANGE[0], pairs));
     claims.extend(reaction_claims(
         algebra,
         derivation,
@@ -168,17 +169,14 @@ fn claims(
         &lagrange,
         kane.total_reaction,
     )?);
-    claims.retain(|claim| claim.pairs.as_ref().is_none_or(|pairs| !pairs.is_empty()));
+    claims.retain(|claim| !claim.pairs.is_empty());
     Ok(claims)
 }
 
 /// Quantities not compared because the time limit was reached.
 fn not_reached(against: Against, quantities: &[&'static str]) -> impl Iterator<Item = Claim> {
-    quantities.iter().map(move |&quantity| Claim {
-        against,
-        quantity,
-        pairs: None,
-    })
+    let quantities = quantities.iter();
+    quantities.map(move |&quantity| Claim::new(against, quantity, Vec::new()))
 }
 
 /// Constraint forces against Lagrange's multipliers, and their sum against Newton's law.
@@ -193,8 +191,7 @@ fn reaction_claims(
     let constraints = &derivation.constraints;
     let forces = reactions::reactions(
         algebra,
-        mechanism,
-        &derivation.symbols,
+        Setting::free(mechanism, &derivation.symbols),
         constraints,
         &derivation.velocities.violating,
         &derivation.bodies,
@@ -234,11 +231,7 @@ fn reaction_claims(
             }
         }
     }
-    let mut claims = vec![Claim {
-        against: Against::Lagrange,
-        quantity: BY_LAGRANGE[1],
-        pairs: Some(pairs),
-    }];
+    let mut claims = vec![Claim::new(Against::Lagrange, BY_LAGRANGE[1], pairs)];
     // The actuators of prescribed motions also have reactions.
     let is_driven = !derivation.given.is_empty();
     if !rows.is_empty() && !is_driven && rests_on_contacts(derivation, mechanism) {
@@ -246,11 +239,8 @@ fn reaction_claims(
         for &force in &forces {
             sum = algebra.graph.add3(sum, force);
         }
-        claims.push(Claim {
-            against: Against::Newton,
-            quantity: "sum of the constraint forces",
-            pairs: Some(named(&axes, &sum, &total)),
-        });
+        let (quantity, pairs) = ("sum of the constraint forces", named(&axes, &sum, &total));
+        claims.push(Claim::new(Against::Newton, quantity, pairs));
     }
     Ok(claims)
 }
@@ -282,43 +272,18 @@ fn generalized_accelerations(
     allowed: &Inertial<'_>,
     accelerations: &[Expr],
 ) -> Outcome<Vec<Expr>> {
-    let mut all = Vec::with_capacity(allowed.rates.len());
-    for &rate in allowed.rates {
-        let along = |algebra: &mut Algebra| {
-            let mut parts = vec![allowed.time().of(algebra, rate)];
-            for (&speed, &acceleration) in allowed.symbols.speeds.iter().zip(accelerations) {
-                let partial = algebra.derivative(rate, speed);
-                parts.push(algebra.graph.mul(partial, acceleration));
-            }
-            Ok(algebra.graph.sum(&parts))
-        };
-        all.push(room(algebra, along)?);
+    let Setting { symbols, rates, .. } = allowed.setting;
+    let mut all = Vec::with_capacity(rates.len());
+    for &rate in rates {
+        let mut parts = vec![allowed.setting.rate(algebra, rate)];
+        for (&speed, &acceleration) in symbols.speeds.iter().zip(accelerations) {
+            let partial = algebra.derivative(rate, speed);
+            parts.push(algebra.graph.mul(partial, acceleration));
+        }
+        all.push(algebra.graph.sum(&parts));
+        algebra.check_size()?;
     }
     Ok(all)
-}
-
-/// Proves identities where possible and compares the other quantities at points.
-fn decide(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    derivation: &Derivation,
-    claims: Vec<Claim>,
-    is_time: &dyn Fn() -> bool,
-) -> FormulationComparison {
-    let mut judge = Judge::new(mechanism, derivation);
-    let mut comparisons = Vec::with_capacity(claims.len());
-    for claim in claims {
-        let pairs = claim.pairs.unwrap_or_default();
-        comparisons.push(Comparison {
-            against: claim.against,
-            quantity: claim.quantity,
-            agreement: judge.agreement(algebra, &pairs, is_time),
-        });
-    }
-    FormulationComparison {
-        comparisons,
-        error_bound: judge.error_bound,
-    }
 }
 
 /// Decides whether expressions agree, and sums the error probabilities of its proofs.

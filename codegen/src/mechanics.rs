@@ -108,13 +108,14 @@ use constraints::Constraints;
 use contacts::Contact;
 use dependent::DependentSpeeds;
 use elimination::{Elimination, GeneralizedVelocities};
+use expressions::Setting;
 use finding::{Finding, Item, Outcome};
 use gibbs_appell::{BodyMotion, GibbsForm};
 use given::Given;
 use initial::InitialState;
 use kinematics::{Effort, Kinematics, RollingContact};
 use loads::AppliedLoad;
-use motion::{Motion, Way};
+use motion::Motion;
 use positions::Positions;
 use recursion::Recursion;
 use row::Row;
@@ -228,16 +229,7 @@ pub fn derive_in_letters(mechanism: &Mechanism) -> Outcome<Derivation> {
 fn equations(mechanism: &Mechanism, in_letters: bool) -> Outcome<Derivation> {
     let (mut derivation, all_loads) = without_reactions(mechanism, in_letters)?;
     derivation.let_all_loads_act(mechanism, all_loads)?;
-    if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
-        derivation.given.refuse_beside("contacts that creep")?;
-        let algebra = &mut derivation.algebra;
-        let (gibbs, forces) = (creeping.gibbs, creeping.forces);
-        derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], Way::Shortest)?;
-        derivation.recursion = None;
-        let rates = &creeping.coordinate_rates;
-        derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, rates);
-        (derivation.gibbs, derivation.forces) = (gibbs, forces);
-    }
+    creep::let_contacts_creep(&mut derivation, mechanism)?;
     derivation.responses_in_outputs = derivation.named_in_outputs(mechanism)?;
     Ok(derivation)
 }
@@ -248,31 +240,29 @@ fn without_reactions(
     mechanism: &Mechanism,
     in_letters: bool,
 ) -> Outcome<(Derivation, Vec<AppliedLoad>)> {
-    let (symbols, mut algebra) = tools(mechanism, in_letters);
-    algebra.given = explicit::given_coordinates(&mut algebra, mechanism, &symbols);
+    let mut graph = Graph::new();
+    let symbols = Symbols::new(&mut graph, mechanism);
+    let mut algebra = Algebra::new(graph, mechanism, &symbols);
+    algebra.in_letters = in_letters;
+    let free = Setting::free(mechanism, &symbols);
+    algebra.given = explicit::given_coordinates(&mut algebra, free);
     let Bound {
         constraints,
         contacts,
         not_judged,
         positions,
         elimination,
-    } = bound(&mut algebra, mechanism, &symbols)?;
-    let rates = &elimination.rates;
+    } = bound(&mut algebra, free)?;
     let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
     let Moving {
         mut kinematics,
         bodies,
         gibbs: unbound_gibbs,
         mut recursion,
-    } = moving(
-        &mut algebra,
-        mechanism,
-        &symbols,
-        &constraints,
-        &elimination,
-    )?;
+    } = moving(&mut algebra, free, &constraints, &elimination)?;
     algebra.check_size()?;
-    let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
+    let setting = Setting::new(mechanism, &symbols, &elimination.rates);
+    let mut loads = loads::applied_loads(&mut algebra, setting, &kinematics)?;
     let all_loads = loads.clone();
     loads::settle(&mut loads, &mut algebra.graph, mechanism, &[])?;
     let forces = match &mut recursion {
@@ -282,8 +272,7 @@ fn without_reactions(
     let unbound = Unbound { forces, bodies };
     let (dependent, velocities) = DependentSpeeds::new(
         &mut algebra,
-        mechanism,
-        &symbols,
+        free,
         &constraints,
         elimination,
         &kinematics,
@@ -295,10 +284,13 @@ fn without_reactions(
     loads::replace(&mut loads, &mut algebra.graph, &mut actual)?;
     let bodies = dependent.reduced_bodies(&mut algebra, unbound.bodies.clone())?;
     let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
-    let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
+    let forces = algebra.apply(&mut actual, &unbound.forces)?;
     let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
-    let rates = &velocities.rates;
-    let mut given = given_rates(&mut algebra, mechanism, &symbols, rates, &dependent)?;
+    let setting = Setting::new(mechanism, &symbols, &velocities.rates);
+    let mut given = Given::of(&mut algebra, setting)?;
+    if !dependent.values.is_empty() {
+        given.refuse_beside("velocities that a system with pivoting tells")?;
+    }
     given.put_into(&mut algebra.graph, &mut gibbs);
     given.put_into_forces(&mut forces);
     recursion = recursion.filter(|_| given.is_empty());
@@ -315,14 +307,12 @@ fn without_reactions(
     let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
     let told = [constraints.warnings.clone(), positions.warnings.clone()];
     let mut warnings = [told.concat(), not_judged].concat();
-    warnings.extend(initially_singular(
-        &mut algebra,
-        mechanism,
-        &symbols,
-        &kinematics,
-        &velocities.rates,
-        &motion,
-    ));
+    let state = InitialState::new(&algebra.graph, mechanism, &symbols);
+    let lengths = initial::vanishing_lengths(&mut algebra, mechanism, &kinematics, &state);
+    warnings.extend(lengths);
+    let (graph, rates) = (&algebra.graph, &velocities.rates);
+    let singular = initial::singularities(graph, mechanism, rates, &motion, &state);
+    warnings.extend(singular);
     let derivation = Derivation {
         algebra,
         symbols,
@@ -349,14 +339,6 @@ fn without_reactions(
     Ok((derivation, all_loads))
 }
 
-fn tools(mechanism: &Mechanism, in_letters: bool) -> (Symbols, Algebra) {
-    let mut graph = Graph::new();
-    let symbols = Symbols::new(&mut graph, mechanism);
-    let mut algebra = Algebra::new(graph, mechanism, &symbols);
-    algebra.in_letters = in_letters;
-    (symbols, algebra)
-}
-
 /// The constraints of the motion.
 struct Bound {
     constraints: Constraints,
@@ -368,23 +350,19 @@ struct Bound {
 }
 
 /// Constraints, and the generalised velocities that satisfy them.
-fn bound(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbols) -> Outcome<Bound> {
-    let mut intervals = declared_ranges(&algebra.graph, mechanism, symbols);
-
-    let unknown = with_unknown_rates(algebra, mechanism, symbols)?;
-    let constraints =
-        constraints::constraints(algebra, mechanism, symbols, &unknown, &mut intervals)?;
-    let (contacts, not_judged) = contacts::contacts(algebra, mechanism, symbols, &constraints)?;
-    let positions = Positions::new(algebra, mechanism, symbols, &unknown, &mut intervals)?;
+fn bound(algebra: &mut Algebra, free: Setting<'_>) -> Outcome<Bound> {
+    let mut intervals = declared_ranges(&algebra.graph, free.mechanism, free.symbols);
+    let unknown = Kinematics::new(algebra, free, &[], Effort::Plain)?;
+    let constraints = constraints::constraints(algebra, free, &unknown, &mut intervals)?;
+    let (contacts, not_judged) = contacts::contacts(algebra, free, &constraints)?;
+    let positions = Positions::new(algebra, free, &unknown, &mut intervals)?;
     algebra.check_size()?;
-    let elimination =
-        elimination::eliminate(algebra, mechanism, symbols, &constraints, &mut intervals)?;
     Ok(Bound {
+        elimination: elimination::eliminate(algebra, free, &constraints, &mut intervals)?,
         constraints,
         contacts,
         not_judged,
         positions,
-        elimination,
     })
 }
 
@@ -406,31 +384,6 @@ fn solved(
     motion::solve(algebra, mechanism, gibbs, forces, &parts, dependent.way())
 }
 
-/// The prescribed rates of the pseudo-velocities.
-fn given_rates(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
-    rates: &[Expr],
-    dependent: &DependentSpeeds,
-) -> Outcome<Given> {
-    let given = Given::of(algebra, mechanism, symbols, rates)?;
-    if !dependent.values.is_empty() {
-        given.refuse_beside("velocities that a system with pivoting tells")?;
-    }
-    Ok(given)
-}
-
-/// Velocities with symbols for q̇.
-fn with_unknown_rates(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
-) -> Outcome<Kinematics> {
-    let rates = &symbols.rates;
-    Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain)
-}
-
 /// Motions of the bodies, and the resulting M and b.
 struct Moving {
     kinematics: Kinematics,
@@ -442,30 +395,30 @@ struct Moving {
 /// By recursion over links where that is shorter, otherwise by summation over bodies.
 fn moving(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    free: Setting<'_>,
     constraints: &Constraints,
     elimination: &Elimination,
 ) -> Outcome<Moving> {
-    let rates = &elimination.rates;
+    let setting = Setting {
+        rates: &elimination.rates,
+        ..free
+    };
     if elimination.open.unknowns.is_empty()
-        && let Some((kinematics, tree)) = Recursion::new(algebra, mechanism, symbols, rates)?
+        && let Some((kinematics, tree)) = Recursion::new(algebra, setting)?
     {
         algebra.check_size()?;
         return Ok(Moving {
-            bodies: tree.bodies(algebra, mechanism, symbols, &kinematics, rates)?,
+            bodies: tree.bodies(algebra, setting, &kinematics)?,
             gibbs: tree.gibbs_form(algebra),
             kinematics,
             recursion: Some(tree),
         });
     }
-    let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
-    let rolling = rolling_contacts(mechanism, constraints, elimination);
+    let directions = [free.symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
+    let rolling = rolling_contacts(free.mechanism, constraints, elimination);
     algebra.relations = relations::relations(algebra, &elimination.open);
-    let effort = Effort::Shortest(&rolling);
-    let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &[], effort)?;
-    let bodies =
-        gibbs_appell::body_motions(algebra, mechanism, symbols, &kinematics, rates, &directions)?;
+    let kinematics = Kinematics::new(algebra, setting, &[], Effort::Shortest(&rolling))?;
+    let bodies = gibbs_appell::body_motions(algebra, setting, &kinematics, &directions)?;
     algebra.relations.clear();
     algebra.check_size()?;
     Ok(Moving {
@@ -513,22 +466,4 @@ fn named_rates(graph: &mut Graph, mechanism: &Mechanism, rates: &[Expr]) -> Vec<
     coordinates
         .map(|(q, &rate)| graph.name(&format!("{}_dot", q.label.name), rate))
         .collect()
-}
-
-/// Singularities at the initial state.
-fn initially_singular(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
-    kinematics: &Kinematics,
-    rates: &[Expr],
-    motion: &Motion,
-) -> Vec<Finding> {
-    let state = InitialState::new(&algebra.graph, mechanism, symbols);
-    let mut findings = initial::vanishing_lengths(algebra, mechanism, kinematics, &state);
-    let graph = &algebra.graph;
-    findings.extend(initial::singularities(
-        graph, mechanism, rates, motion, &state,
-    ));
-    findings
 }

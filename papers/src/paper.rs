@@ -127,7 +127,7 @@ impl Paper {
             if let Some(point) = paper.mechanism.points.find(|p| p.name == name) {
                 let kinematics = &paper.derivation.kinematics;
                 let graph = &mut paper.derivation.algebra.graph;
-                let position = kinematics.position(graph, &paper.mechanism, point);
+                let position = kinematics.position(graph, point);
                 let velocity = kinematics.velocity(point);
                 paper.derive_as(&format!("z{name}"), position[2]);
                 paper.vector(&format!("v{name}"), velocity, tilted);

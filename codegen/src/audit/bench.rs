@@ -4,13 +4,13 @@ use appell_spec::mechanism::{Mechanism, ParameterId};
 
 use super::ranges::Proposal;
 use crate::mechanics::algebra::Algebra;
+use crate::mechanics::elimination::eliminate;
 use crate::mechanics::explicit::given_coordinates;
-use crate::mechanics::expressions::Lowering;
+use crate::mechanics::expressions::Setting;
 use crate::mechanics::finding::Finding;
 use crate::mechanics::initial::InitialState;
 use crate::mechanics::kinematics::{Effort, Kinematics};
 use crate::mechanics::motions::motions;
-use crate::mechanics::symbols::Symbols;
 use crate::mechanics::{Derivation, declared_ranges};
 use crate::symbolic::print::{Setter, Spelled, text};
 use crate::symbolic::{Expr, Graph, Intervals, Substitution};
@@ -51,8 +51,9 @@ impl<'a> Bench<'a> {
         let symbols = &derivation.symbols;
         let graph = derivation.algebra.graph.clone();
         let mut algebra = Algebra::new(graph, mechanism, symbols);
-        algebra.given = given_coordinates(&mut algebra, mechanism, symbols);
-        let unconstrained = unconstrained(&mut algebra, mechanism, symbols)?;
+        let free = Setting::free(mechanism, symbols);
+        algebra.given = given_coordinates(&mut algebra, free);
+        let unconstrained = Kinematics::new(&mut algebra, free, &[], Effort::Plain).ok()?;
         let outputs = outputs(&mut algebra, mechanism, derivation)?;
         Some(Self {
             mechanism,
@@ -65,6 +66,35 @@ impl<'a> Bench<'a> {
             limits: None,
             proposals: Vec::new(),
         })
+    }
+
+    /// The motion in terms of the pseudo-velocities.
+    pub(super) fn setting(&self) -> Setting<'a> {
+        let Derivation {
+            symbols,
+            velocities,
+            ..
+        } = self.derivation;
+        Setting::new(self.mechanism, symbols, &velocities.rates)
+    }
+
+    /// The motion with symbols for the generalised velocities.
+    pub(super) fn free(&self) -> Setting<'a> {
+        Setting::free(self.mechanism, &self.derivation.symbols)
+    }
+
+    /// Coordinates whose rates need a pivoted solve in a mechanism with other ranges or limits; `None` without a
+    /// solution.
+    pub(super) fn pivoted(&mut self, other: &Mechanism) -> Option<Vec<usize>> {
+        let Derivation {
+            symbols,
+            constraints,
+            ..
+        } = self.derivation;
+        let mut ranges = declared_ranges(&self.algebra.graph, other, symbols);
+        let free = Setting::free(other, symbols);
+        let solved = eliminate(&mut self.algebra, free, constraints, &mut ranges).ok()?;
+        Some(solved.open.coordinates)
     }
 
     /// An expression as displayed text, if it is short enough.
@@ -117,45 +147,24 @@ fn outputs(
     derivation: &Derivation,
 ) -> Option<Vec<Expr>> {
     let symbols = &derivation.symbols;
-    let lowering = Lowering {
-        symbols,
-        rates: &derivation.velocities.rates,
-    };
-    let mut told = motions(algebra, mechanism, symbols, &derivation.kinematics);
+    let setting = Setting::new(mechanism, symbols, &derivation.velocities.rates);
+    let mut told = motions(algebra, symbols, &derivation.kinematics);
     // With symbols for ω̇, whose value follows from the equations alone.
     let named = &derivation.responses_in_outputs;
     let mut named = Substitution::of_parts(&algebra.graph, named);
     let mut outputs = Vec::with_capacity(mechanism.outputs.len());
     for output in &mechanism.outputs {
         let graph = &mut algebra.graph;
-        let mut value = lowering.lower(graph, &output.value).ok()?;
-        if let Some(told) = &mut told {
-            value = told.apply(graph, value)?;
-        }
+        let value = setting.lower(graph, &output.value).ok()?;
+        let value = told.apply(graph, value)?;
         outputs.push(named.apply(graph, value)?);
     }
     Some(outputs)
 }
 
-/// Velocities with symbols for q̇.
-pub(super) fn unconstrained(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
-) -> Option<Kinematics> {
-    let rates = &symbols.rates;
-    Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain).ok()
-}
-
 pub(super) fn shown(graph: &Graph, expr: Expr) -> String {
     let mut setter = Setter::new(Spelled).with_definitions_inline();
     text(&setter.set(graph, expr).math)
-}
-
-/// Names in a sentence: `` `a`, `b` ``.
-pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
-    names.join(", ")
 }
 
 /// Parameter limits with which the rates have an explicit formula instead of a pivoted solve.

@@ -4,36 +4,29 @@
 //! rest. So the normal components of both velocities vanish by geometry, and the tangential ones differ.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, Mechanism, Normal, PointId};
+use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, Normal, PointId};
 
-use super::bench::{listed, shown, unconstrained};
+use super::bench::shown;
 use crate::mechanics::algebra::Algebra;
-use crate::mechanics::expressions::Lowering;
-use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::expressions::Setting;
+use crate::mechanics::finding::{Finding, Item, listed};
 use crate::mechanics::initial::InitialState;
-use crate::mechanics::kinematics::Kinematics;
+use crate::mechanics::kinematics::{Effort, Kinematics};
 use crate::mechanics::rank::{LinearRow, Standing, standings};
-use crate::mechanics::symbols::Symbols;
-use crate::mechanics::time::TimeDerivative;
 use crate::symbolic::vector;
 use crate::symbolic::{Expr, Graph};
 
 /// At most one finding per rolling contact.
-pub(super) fn findings(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
-) -> Vec<Finding> {
-    let Some(kinematics) = unconstrained(algebra, mechanism, symbols) else {
+pub(super) fn findings(algebra: &mut Algebra, setting: Setting<'_>) -> Vec<Finding> {
+    let Ok(kinematics) = Kinematics::new(algebra, setting, &[], Effort::Plain) else {
         return Vec::new();
     };
     let mut geometry = Geometry {
         algebra,
-        mechanism,
-        symbols,
+        setting,
         kinematics,
     };
-    let constraints = mechanism.constraints.entries();
+    let constraints = setting.mechanism.constraints.entries();
     constraints
         .filter_map(|(index, constraint)| {
             let ConstraintKind::Rolling {
@@ -61,15 +54,14 @@ pub(super) fn findings(
 
 struct Geometry<'a> {
     algebra: &'a mut Algebra,
-    mechanism: &'a Mechanism,
-    symbols: &'a Symbols,
+    setting: Setting<'a>,
     kinematics: Kinematics,
 }
 
 impl Geometry<'_> {
     /// The inconsistency of a contact, and the fix.
     fn contradiction(&mut self, body: BodyId, contact: PointId) -> Option<(String, String)> {
-        let mechanism = self.mechanism;
+        let mechanism = self.setting.mechanism;
         let (body_name, point) = (
             &mechanism.bodies[body].name,
             &mechanism.points[contact].name,
@@ -106,8 +98,7 @@ impl Geometry<'_> {
         let arm = if is_bound {
             vector::ZERO
         } else {
-            self.kinematics
-                .between(graph, mechanism, contact, centre, GROUND)
+            self.kinematics.between(graph, contact, centre, GROUND)
         };
         let standings = self.after_positions(&material, &arm);
         let count = |wanted| standings.iter().filter(|&s| *s == wanted).count();
@@ -141,13 +132,12 @@ impl Geometry<'_> {
     ) -> Option<(String, String)> {
         let (k, frame) = (normal.axis.index(), normal.frame);
         let graph = &mut self.algebra.graph;
-        let (mechanism, kinematics) = (self.mechanism, &self.kinematics);
-        let v = kinematics.material_velocity(graph, mechanism, body, contact, frame);
+        let mechanism = self.setting.mechanism;
+        let v = (self.kinematics).material_velocity(graph, Some(body), contact, frame);
         let point = &mechanism.points[contact].name;
         if self.independent_of_positions(&[v[k]]) > 0 {
             let graph = &mut self.algebra.graph;
-            let of_point = self.kinematics.velocity(contact);
-            let of_point = self.kinematics.frames.express(graph, of_point, frame);
+            let of_point = self.kinematics.velocity_in(graph, contact, frame);
             if self.independent_of_positions(&[of_point[k]]) == 0 {
                 return Some(self.is_not_tangent(body, contact));
             }
@@ -161,10 +151,8 @@ impl Geometry<'_> {
         }
         let centre = mechanism.bodies[body].centre;
         let graph = &mut self.algebra.graph;
-        let arm = self
-            .kinematics
-            .between(graph, mechanism, contact, centre, frame);
-        let state = InitialState::new(graph, mechanism, self.symbols);
+        let arm = self.kinematics.between(graph, contact, centre, frame);
+        let state = InitialState::new(graph, mechanism, self.setting.symbols);
         let height = state.of(graph, &[arm[k]])[0];
         let height = if normal.negative { -height } else { height };
         (height < 0.0).then(|| {
@@ -179,14 +167,9 @@ impl Geometry<'_> {
     }
 
     fn is_centre(&mut self, body: BodyId, contact: PointId) -> bool {
-        let centre = self.mechanism.bodies[body].centre;
-        let arm = self.kinematics.between(
-            &mut self.algebra.graph,
-            self.mechanism,
-            centre,
-            contact,
-            GROUND,
-        );
+        let centre = self.setting.mechanism.bodies[body].centre;
+        let graph = &mut self.algebra.graph;
+        let arm = self.kinematics.between(graph, centre, contact, GROUND);
         self.vanishes(&arm)
     }
 
@@ -194,29 +177,28 @@ impl Geometry<'_> {
     fn is_pinned(&mut self, body: BodyId, contact: PointId) -> bool {
         let material = self.material_velocity(body, contact);
         let graph = &mut self.algebra.graph;
-        let point = self.kinematics.velocity(contact);
-        let point = self.kinematics.frames.express(graph, point, GROUND);
+        let point = self.kinematics.velocity_in(graph, contact, GROUND);
         let passing = graph.sub3(material, point);
         self.vanishes(&passing)
     }
 
     /// Whether a point has constant height under the position constraints.
     fn stays_level(&mut self, point: PointId) -> bool {
-        let Some(down) = self.mechanism.down() else {
+        let Some(down) = self.setting.mechanism.down() else {
             return false;
         };
         let graph = &mut self.algebra.graph;
-        let v = self.kinematics.velocity(point);
-        let v = self.kinematics.frames.express(graph, v, GROUND);
+        let v = self.kinematics.velocity_in(graph, point, GROUND);
         let down = down.map(|c| graph.integer(c.into()));
         let falls = graph.dot(down, v);
         self.independent_of_positions(&[falls]) == 0
     }
 
     fn is_not_tangent(&self, body: BodyId, contact: PointId) -> (String, String) {
-        let body = &self.mechanism.bodies[body];
-        let point = &self.mechanism.points[contact].name;
-        let (name, centre) = (&body.name, &self.mechanism.points[body.centre].name);
+        let mechanism = self.setting.mechanism;
+        let body = &mechanism.bodies[body];
+        let point = &mechanism.points[contact].name;
+        let (name, centre) = (&body.name, &mechanism.points[body.centre].name);
         (
             format!(
                 "`{name}` does not touch the ground at `{point}`: as it turns, its material there \
@@ -245,7 +227,7 @@ impl Geometry<'_> {
         let positions = of_positions.len();
         let velocities = of_positions.into_iter().map(|v| (v, Graph::ZERO));
         let wanted = wanted.iter().copied().zip(rests.iter().copied());
-        let rates = &self.symbols.rates;
+        let rates = self.setting.rates;
         let rows: Vec<LinearRow> = velocities
             .chain(wanted)
             .map(|(velocity, rest)| {
@@ -265,21 +247,19 @@ impl Geometry<'_> {
 
     /// Time derivatives of the position constraints.
     fn velocities_of_positions(&mut self) -> Vec<Expr> {
-        let symbols = self.symbols;
-        let rates = &symbols.rates;
         let mut velocities = Vec::new();
-        for constraint in &self.mechanism.constraints {
+        for constraint in &self.setting.mechanism.constraints {
             if let ConstraintKind::Position { zero, .. } = &constraint.kind
-                && let Ok(zero) = (Lowering { symbols, rates }).lower(&mut self.algebra.graph, zero)
+                && let Ok(zero) = self.setting.lower(&mut self.algebra.graph, zero)
             {
-                velocities.push(TimeDerivative { symbols, rates }.of(self.algebra, zero));
+                velocities.push(self.setting.rate(self.algebra, zero));
             }
         }
         velocities
     }
 
     fn leaves_the_ground(&mut self, contact: PointId) -> (String, String) {
-        let point = &self.mechanism.points[contact].name;
+        let point = &self.setting.mechanism.points[contact].name;
         let across = match self.height(contact) {
             Some((height, coordinates)) if !coordinates.is_empty() => {
                 let height = shown(&self.algebra.graph, height);
@@ -303,15 +283,16 @@ impl Geometry<'_> {
 
     /// Height of a point, opposite to gravity, and the coordinates that change it.
     fn height(&mut self, point: PointId) -> Option<(Expr, Vec<String>)> {
-        let down = self.mechanism.down()?;
+        let mechanism = self.setting.mechanism;
+        let down = mechanism.down()?;
         let graph = &mut self.algebra.graph;
-        let position = self.kinematics.position(graph, self.mechanism, point);
+        let position = self.kinematics.position(graph, point);
         let down = down.map(|c| graph.integer((-c).into()));
         let height = graph.dot(down, position);
         let height = self.algebra.shortest(height);
         let graph = &self.algebra.graph;
-        let coordinates = self.mechanism.coordinates.iter();
-        let changing = coordinates.zip(&self.symbols.coordinates);
+        let coordinates = mechanism.coordinates.iter();
+        let changing = coordinates.zip(&self.setting.symbols.coordinates);
         let changing = changing.filter(|&(_, &symbol)| {
             let symbol = graph.as_symbol(symbol);
             symbol.is_some_and(|symbol| graph.mentions(height, &[symbol]))
@@ -322,24 +303,23 @@ impl Geometry<'_> {
 
     /// Whether the contact lies above the centre of the body at the initial state.
     fn is_overhead(&mut self, body: BodyId, contact: PointId) -> bool {
-        let Some(down) = self.mechanism.down() else {
+        let Some(down) = self.setting.mechanism.down() else {
             return false;
         };
-        let centre = self.mechanism.bodies[body].centre;
+        let mechanism = self.setting.mechanism;
+        let centre = mechanism.bodies[body].centre;
         let graph = &mut self.algebra.graph;
-        let arm = self
-            .kinematics
-            .between(graph, self.mechanism, centre, contact, GROUND);
+        let arm = self.kinematics.between(graph, centre, contact, GROUND);
         let down = down.map(|c| graph.integer(c.into()));
         let depth = graph.dot(down, arm);
-        let state = InitialState::new(graph, self.mechanism, self.symbols);
+        let state = InitialState::new(graph, mechanism, self.setting.symbols);
         state.of(graph, &[depth])[0] < 0.0
     }
 
     fn material_velocity(&mut self, body: BodyId, contact: PointId) -> [Expr; 3] {
         let graph = &mut self.algebra.graph;
         self.kinematics
-            .material_velocity(graph, self.mechanism, body, contact, GROUND)
+            .material_velocity(graph, Some(body), contact, GROUND)
     }
 
     fn vanishes(&mut self, v: &[Expr; 3]) -> bool {

@@ -4,11 +4,10 @@
 use appell_spec::Code;
 use appell_spec::mechanism::SpeedId;
 
-use super::bench::{Audit, Bench, listed};
+use super::bench::{Audit, Bench};
 use super::samples::takes_both_signs;
 use crate::mechanics::algebra::Algebra;
-use crate::mechanics::expressions::Lowering;
-use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::finding::{Finding, Item, listed};
 use crate::mechanics::motions::motions;
 use crate::symbolic::{Expr, Graph, Node, SymbolId};
 
@@ -123,20 +122,14 @@ pub(super) fn divisors(bench: &mut Bench) -> Vec<Expr> {
 
 /// Coefficients of q̇ in the definitions of the pseudo-velocities, and in the constraints.
 fn coefficients(bench: &mut Bench) -> Option<(Matrix, Matrix)> {
-    let symbols = &bench.derivation.symbols;
-    let lowering = Lowering {
-        symbols,
-        rates: &symbols.rates,
-    };
+    let free = bench.free();
     let algebra = &mut bench.algebra;
-    let mut told = motions(algebra, bench.mechanism, symbols, &bench.unconstrained);
+    let mut told = motions(algebra, free.symbols, &bench.unconstrained);
     let mut speeds = Matrix::new();
     for speed in &bench.mechanism.pseudo_velocities {
-        let mut value = lowering.lower(&mut algebra.graph, &speed.definition).ok()?;
-        if let Some(told) = &mut told {
-            value = told.apply(&mut algebra.graph, value)?;
-        }
-        let row = symbols.rates.iter().map(|&rate| {
+        let value = free.lower(&mut algebra.graph, &speed.definition).ok()?;
+        let value = told.apply(&mut algebra.graph, value)?;
+        let row = free.rates.iter().map(|&rate| {
             let coefficient = algebra.derivative(value, rate);
             algebra.shortest(coefficient)
         });

@@ -4,7 +4,6 @@ use appell_spec::Code;
 
 use super::bench::{Audit, Bench};
 use super::work::silent_loads;
-use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::loads::{applied_loads, settle};
 use crate::mechanics::motions::motions;
@@ -60,8 +59,8 @@ fn coordinates(bench: &mut Bench, told: &mut Audit) {
 
 /// The motion in terms of q and q̇: velocities of the bodies, powers of the loads, outputs.
 fn moved(bench: &mut Bench) -> Option<Vec<Expr>> {
-    let (mechanism, symbols) = (bench.mechanism, &bench.derivation.symbols);
-    let rates = &symbols.rates;
+    let setting = bench.free();
+    let (mechanism, symbols) = (setting.mechanism, setting.symbols);
     let algebra = &mut bench.algebra;
     let free = &bench.unconstrained;
     let mut moved = Vec::new();
@@ -71,21 +70,17 @@ fn moved(bench: &mut Bench) -> Option<Vec<Expr>> {
             moved.extend(free.frames.angular_velocity(frame).v);
         }
     }
-    let mut loads = applied_loads(algebra, mechanism, symbols, free, rates).ok()?;
+    let mut loads = applied_loads(algebra, setting, free).ok()?;
     let responses = symbols.responses.iter();
     let as_they_are: Vec<(Expr, Expr)> = responses.map(|&(_, symbol)| (symbol, symbol)).collect();
     settle(&mut loads, &mut algebra.graph, mechanism, &as_they_are).ok()?;
     for load in loads {
         moved.push(load.power(&mut algebra.graph));
     }
-    let lowering = Lowering { symbols, rates };
-    let mut told = motions(algebra, mechanism, symbols, free);
+    let mut told = motions(algebra, symbols, free);
     for output in &mechanism.outputs {
-        let value = lowering.lower(&mut algebra.graph, &output.value).ok()?;
-        moved.push(match &mut told {
-            Some(told) => told.apply(&mut algebra.graph, value)?,
-            None => value,
-        });
+        let value = setting.lower(&mut algebra.graph, &output.value).ok()?;
+        moved.push(told.apply(&mut algebra.graph, value)?);
     }
     moved.retain(|&e| e != Graph::ZERO);
     Some(moved)

@@ -8,9 +8,12 @@
 use appell_spec::Code;
 use appell_spec::mechanism::CoordinateId;
 
-use super::bench::{Bench, listed};
-use crate::mechanics::finding::{Finding, Item};
+use super::bench::Bench;
+use crate::mechanics::algebra::scalar_product;
+use crate::mechanics::finding::{Finding, Item, listed};
 use crate::mechanics::rank::{Combination, LinearRow, Standing, standings};
+use crate::mechanics::row::Row;
+use crate::mechanics::symbols::ids;
 use crate::symbolic::{Expr, Graph, Substitution};
 
 /// Maximum number of fields whose brackets are formed.
@@ -167,11 +170,8 @@ fn velocities(bench: &mut Bench, rows: &[usize], bracket: &Field) -> Vec<Expr> {
     let algebra = &mut bench.algebra;
     rows.iter()
         .map(|&row| {
-            let coefficients = all[row].coefficients.iter().zip(&bracket.rates);
-            let parts: Vec<Expr> = coefficients
-                .map(|(&c, &rate)| algebra.graph.mul(c, rate))
-                .collect();
-            let velocity = algebra.graph.sum(&parts);
+            let coefficients = &all[row].coefficients;
+            let velocity = scalar_product(&mut algebra.graph, coefficients, &bracket.rates);
             algebra.unless_zero(velocity)
         })
         .collect()
@@ -200,12 +200,7 @@ fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Option<Findin
     }
     let tied: Vec<&str> = (0..count)
         .filter(|&q| form[q] != Graph::ZERO)
-        .map(|q| {
-            bench.mechanism.coordinates[CoordinateId::new(q)]
-                .label
-                .name
-                .as_str()
-        })
+        .map(|q| &*bench.mechanism.coordinates[CoordinateId::new(q)].label.name)
         .collect();
     let mut names: Vec<&str> = sum.iter().map(|&(r, _)| rows[r].name.as_str()).collect();
     names.push(&rows[row].name);
@@ -245,13 +240,8 @@ fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Option<Findin
 /// Whether a form follows from the position constraints, including those whose rows contacts repeat.
 fn is_stated(bench: &mut Bench, form: &[Expr], rest: Expr) -> bool {
     let rows = bench.derivation.constraints.rows.iter();
-    let mut rows: Vec<LinearRow> = rows
-        .filter(|row| row.of_position)
-        .map(|row| LinearRow {
-            coefficients: row.coefficients.clone(),
-            rest: row.rest,
-        })
-        .collect();
+    let rows = rows.filter(|row| row.of_position).map(Row::linear);
+    let mut rows: Vec<LinearRow> = rows.collect();
     rows.push(LinearRow {
         coefficients: form.to_vec(),
         rest,
@@ -264,17 +254,11 @@ fn is_stated(bench: &mut Bench, form: &[Expr], rest: Expr) -> bool {
 fn relation(bench: &mut Bench, form: &[Expr]) -> Option<Expr> {
     let symbols = &bench.derivation.symbols;
     let graph = &mut bench.algebra.graph;
-    let mut varying: Vec<_> = crate::mechanics::symbols::ids(graph, &symbols.coordinates);
-    let signals: Vec<Expr> = symbols.signals.iter().flatten().copied().collect();
-    varying.extend(crate::mechanics::symbols::ids(graph, &signals));
-    varying.extend(graph.as_symbol(symbols.time));
+    let signals = symbols.signals.concat();
+    let varying = [&symbols.coordinates[..], &signals, &[symbols.time]].concat();
+    let varying = ids(graph, &varying);
     if form.iter().any(|&c| graph.mentions(c, &varying)) {
         return None;
     }
-    let terms: Vec<Expr> = form
-        .iter()
-        .zip(&symbols.coordinates)
-        .map(|(&c, &q)| graph.mul(c, q))
-        .collect();
-    Some(graph.sum(&terms))
+    Some(scalar_product(graph, form, &symbols.coordinates))
 }

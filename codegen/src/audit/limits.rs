@@ -3,11 +3,9 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{CoordinateId, Mechanism, Parameter, ParameterId};
 
-use super::bench::{Audit, Bench, Limits, listed};
+use super::bench::{Audit, Bench, Limits};
 use super::determination::divisors;
-use crate::mechanics::declared_ranges;
-use crate::mechanics::elimination::eliminate;
-use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::finding::{Finding, Item, listed};
 
 /// Ratios of the limits to the values, the widest first.
 const FACTORS: [f64; 4] = [2.0, 1.5, 1.2, 1.1];
@@ -45,17 +43,7 @@ pub(super) fn limits(bench: &mut Bench) -> Option<Limits> {
             written.push((id, ends));
         }
         written.retain(|(_, ends)| ends.iter().any(Option::is_some));
-        let symbols = &derivation.symbols;
-        let mut ranges = declared_ranges(&bench.algebra.graph, &limited, symbols);
-        let constraints = &derivation.constraints;
-        let solved = eliminate(
-            &mut bench.algebra,
-            &limited,
-            symbols,
-            constraints,
-            &mut ranges,
-        );
-        let holds = solved.is_ok_and(|solved| solved.open.coordinates.is_empty());
+        let holds = bench.pivoted(&limited).is_some_and(|open| open.is_empty());
         (holds && !written.is_empty()).then(|| Limits {
             divisors: divisors.clone(),
             parameters: written,
@@ -72,15 +60,11 @@ fn missing(parameter: &Parameter, factor: f64) -> [Option<f64>; 2] {
     } else {
         ends
     };
+    let (bounded_below, bounded_above) =
+        (parameter.at_least.is_some(), parameter.at_most.is_some());
     [
-        parameter
-            .at_least
-            .is_none()
-            .then(|| two_digits(least, f64::ceil)),
-        parameter
-            .at_most
-            .is_none()
-            .then(|| two_digits(most, f64::floor)),
+        (!bounded_below).then(|| two_digits(least, f64::ceil)),
+        (!bounded_above).then(|| two_digits(most, f64::floor)),
     ]
 }
 
@@ -96,23 +80,15 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     };
     let mechanism = bench.mechanism;
     let names = |q: &usize| &*mechanism.coordinates[CoordinateId::new(*q)].label.name;
-    let rates = listed(
-        bench
-            .derivation
-            .velocities
-            .solved_numerically
-            .iter()
-            .map(names),
-    );
-    let divisors = limits
-        .divisors
-        .iter()
-        .filter_map(|&divisor| bench.readable(divisor));
-    let divisors: Vec<String> = divisors.map(|text| format!("`{text}`")).collect();
+    let solved = &bench.derivation.velocities.solved_numerically;
+    let rates = listed(solved.iter().map(names));
+    let divisors = limits.divisors.iter();
+    let divisors: Vec<String> = divisors.filter_map(|&d| bench.readable(d)).collect();
     let because = if divisors.is_empty() {
         String::new()
     } else {
-        format!(", as their divisor {} may vanish", divisors.join(", "))
+        let divisors = listed(divisors.iter().map(String::as_str));
+        format!(", as their divisor {divisors} may vanish")
     };
     let Some(&(first, _)) = limits.parameters.first() else {
         return;

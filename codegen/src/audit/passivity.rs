@@ -5,7 +5,6 @@ use appell_spec::expr::Expr as Spec;
 use appell_spec::mechanism::{LoadId, LoadKind};
 
 use super::bench::{Audit, Bench};
-use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::symbols::ids;
 use crate::symbolic::{Expr, Graph, Substitution};
@@ -62,12 +61,9 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
 }
 
 fn is_negative(bench: &mut Bench, coefficient: &Spec) -> bool {
-    let lowering = Lowering {
-        symbols: &bench.derivation.symbols,
-        rates: &bench.derivation.velocities.rates,
-    };
+    let setting = bench.setting();
     let graph = &mut bench.algebra.graph;
-    lowering
+    setting
         .lower(graph, coefficient)
         .is_ok_and(|coefficient| bench.declared.of(graph, coefficient).hi < 0.0)
 }

@@ -3,10 +3,8 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{Coordinate, CoordinateId, Mechanism};
 
-use super::bench::{Audit, Bench, listed};
-use crate::mechanics::declared_ranges;
-use crate::mechanics::elimination::eliminate;
-use crate::mechanics::finding::{Finding, Item};
+use super::bench::{Audit, Bench};
+use crate::mechanics::finding::{Finding, Item, listed};
 
 /// Ranges that exclude poles, in radians: about zero for a tilt, between poles for a polar angle.
 const BETWEEN_POLES: [[f64; 2]; 3] = [[-1.5, 1.5], [0.05, 3.1], [-3.1, -0.05]];
@@ -72,19 +70,9 @@ pub(super) fn proposals(bench: &mut Bench) -> Vec<Proposal> {
         ranges.sort_by_key(|&range| !contains(range, q.initial));
         for range in ranges {
             mechanism.coordinates[id].range = Some(range);
-            let graph = &bench.algebra.graph;
-            let mut intervals = declared_ranges(graph, &mechanism, &derivation.symbols);
-            let solved = eliminate(
-                &mut bench.algebra,
-                &mechanism,
-                &derivation.symbols,
-                &derivation.constraints,
-                &mut intervals,
-            );
-            if let Ok(solved) = solved
-                && solved.open.coordinates.len() < left
+            if let Some(open) = bench.pivoted(&mechanism)
+                && open.len() < left
             {
-                let open = solved.open.coordinates;
                 left = open.len();
                 proposals.push(Proposal {
                     coordinate: id,

@@ -6,7 +6,6 @@ use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, FrameId, LoadId, LoadKind, PointId};
 
 use super::bench::{Audit, Bench};
-use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::symbols::ids;
 use crate::symbolic::vector::Vec3;
@@ -19,10 +18,7 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
 /// Forces between two points that do not act along the line between them.
 fn couples(bench: &mut Bench, told: &mut Audit) {
     let mechanism = bench.mechanism;
-    let lowering = Lowering {
-        symbols: &bench.derivation.symbols,
-        rates: &bench.derivation.velocities.rates,
-    };
+    let setting = bench.setting();
     for (index, load) in mechanism.loads.entries() {
         let LoadKind::Force {
             on,
@@ -35,12 +31,10 @@ fn couples(bench: &mut Bench, told: &mut Audit) {
             continue;
         };
         let graph = &mut bench.algebra.graph;
-        let Ok(force) = lowering.lower_all(graph, vector) else {
+        let Ok(force) = setting.lower_all(graph, vector) else {
             continue;
         };
-        let arm = bench
-            .unconstrained
-            .between(graph, mechanism, *other, *on, *frame);
+        let arm = bench.unconstrained.between(graph, *other, *on, *frame);
         let couple = graph.cross(arm, force);
         let test = &mut bench.algebra.test;
         if couple
@@ -120,10 +114,7 @@ fn equal_signs(bench: &mut Bench, told: &mut Audit) {
 
 /// A load without a reaction.
 fn external(bench: &mut Bench, load: LoadId) -> Option<Action> {
-    let lowering = Lowering {
-        symbols: &bench.derivation.symbols,
-        rates: &bench.derivation.velocities.rates,
-    };
+    let setting = bench.setting();
     let (on, frame, vector) = match &bench.mechanism.loads[load].kind {
         LoadKind::Force {
             on,
@@ -140,6 +131,6 @@ fn external(bench: &mut Bench, load: LoadId) -> Option<Action> {
         } => (On::Body(*on), *frame, vector),
         _ => return None,
     };
-    let vector = lowering.lower_all(&mut bench.algebra.graph, vector).ok()?;
+    let vector = setting.lower_all(&mut bench.algebra.graph, vector).ok()?;
     Some((on, frame, vector))
 }

@@ -3,9 +3,9 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{InputId, LoadId, LoadKind};
 
-use super::bench::{Audit, Bench, listed};
+use super::bench::{Audit, Bench};
 use crate::mechanics::algebra::Algebra;
-use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::finding::{Finding, Item, listed};
 use crate::symbolic::{Expr, SymbolId};
 
 pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
@@ -37,16 +37,16 @@ fn loads(bench: &Bench, silent: &[LoadId], told: &mut Audit) {
         } else {
             format!("`{}` with the input {names}", load.name)
         };
+        let [reason, help] = explanation(&load.kind);
         let mut finding = Finding {
             code: Code::NoWork,
-            message: format!("{subject} does no work: {}", reason(&load.kind)),
+            message: format!("{subject} does no work: {reason}"),
             item: Item::Load(index),
-            help: help(&load.kind).to_owned(),
+            help: help.to_owned(),
         };
         if reacting && names.is_empty() {
             finding.help = format!(
-                "no action is needed if only its effect on the reactions is wanted; otherwise {}",
-                finding.help
+                "no action is needed if only its effect on the reactions is wanted; otherwise {help}"
             );
             told.notes.push(finding);
         } else {
@@ -94,36 +94,36 @@ fn inputs_of<'a>(bench: &Bench<'a>, load: LoadId) -> Vec<(InputId, &'a str, Symb
         .collect()
 }
 
-fn reason(kind: &LoadKind) -> &'static str {
+/// Why a load does no work, and the fix.
+fn explanation(kind: &LoadKind) -> [&'static str; 2] {
     match kind {
-        LoadKind::Gravity { .. } => "no body can rise or fall",
-        LoadKind::Force {
-            reaction_on: None, ..
-        } => "its point never moves along the force",
-        LoadKind::Force { .. } => {
-            "its two points never move relative to each other along the force"
-        }
-        LoadKind::Torque {
-            reaction_on: None, ..
-        } => "its body never rotates about the axis of the torque",
-        LoadKind::Torque { .. } => {
-            "its two bodies never rotate relative to each other about the axis of the torque"
-        }
-        LoadKind::SpringDamper { .. } => "its length or coordinate is constant",
-        LoadKind::Generalized { .. } => {
-            "its coordinate or velocity is constant, or the force is zero"
-        }
-    }
-}
-
-fn help(kind: &LoadKind) -> &'static str {
-    match kind {
-        LoadKind::Gravity { .. } => {
-            "check `down` against the axes in which the points are placed, or remove the load"
-        }
-        LoadKind::Force { .. } => "check the components, the frame and the point of the force",
-        LoadKind::Torque { .. } => "check the components, the frame and the body of the torque",
-        LoadKind::SpringDamper { .. } => "connect points whose distance can change",
-        LoadKind::Generalized { .. } => "name a coordinate or a velocity that can change",
+        LoadKind::Gravity { .. } => [
+            "no body can rise or fall",
+            "check `down` against the axes in which the points are placed, or remove the load",
+        ],
+        LoadKind::Force { reaction_on, .. } => [
+            if reaction_on.is_none() {
+                "its point never moves along the force"
+            } else {
+                "its two points never move relative to each other along the force"
+            },
+            "check the components, the frame and the point of the force",
+        ],
+        LoadKind::Torque { reaction_on, .. } => [
+            if reaction_on.is_none() {
+                "its body never rotates about the axis of the torque"
+            } else {
+                "its two bodies never rotate relative to each other about the axis of the torque"
+            },
+            "check the components, the frame and the body of the torque",
+        ],
+        LoadKind::SpringDamper { .. } => [
+            "its length or coordinate is constant",
+            "connect points whose distance can change",
+        ],
+        LoadKind::Generalized { .. } => [
+            "its coordinate or velocity is constant, or the force is zero",
+            "name a coordinate or a velocity that can change",
+        ],
     }
 }

@@ -3,37 +3,20 @@
 
 use appell_spec::expr::{Expr as Spec, Motion as Quantity, Response};
 use appell_spec::mechanism::{
-    Axis, BodyId, Components, ConstraintId, ConstraintKind, FrameId, List, Mechanism, PointId,
+    Axis, BodyId, Components, ConstraintId, ConstraintKind, FrameId, List, PointId,
 };
 
 use super::loads::acting;
-use crate::mechanics::algebra::Algebra;
-use crate::mechanics::expressions::{DivisionByZero, Lowering};
-use crate::mechanics::finding::{Item, Outcome, division_by_zero};
-use crate::mechanics::symbols::Symbols;
-use crate::mechanics::time::TimeDerivative;
+use crate::mechanics::algebra::{Algebra, replacing};
+use crate::mechanics::expressions::Setting;
+use crate::mechanics::finding::{Item, Outcome};
 use crate::symbolic::vector::{self, Mat3, Vec3};
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// A lowered expression of a spec.
-pub(super) type Lowered<T> = Result<T, DivisionByZero>;
-
-/// Runs a step that may divide by zero and may create many expressions.
-pub(super) fn room<T>(
-    algebra: &mut Algebra,
-    step: impl FnOnce(&mut Algebra) -> Lowered<T>,
-) -> Outcome<T> {
-    let result = step(algebra).map_err(|DivisionByZero| vec![division_by_zero(Item::Mechanism)])?;
-    algebra.check_size()?;
-    Ok(result)
-}
-
 /// Positions and velocities for given generalised velocities.
 pub(super) struct Inertial<'a> {
-    pub(super) mechanism: &'a Mechanism,
-    pub(super) symbols: &'a Symbols,
-    /// Generalised velocities: symbols, or functions of the pseudo-velocities.
-    pub(super) rates: &'a [Expr],
+    /// The generalised velocities are symbols, or functions of the pseudo-velocities.
+    pub(super) setting: Setting<'a>,
     /// Rotation matrices from each frame to the ground frame.
     rotations: List<FrameId, Mat3>,
     positions: List<PointId, Vec3>,
@@ -58,15 +41,12 @@ pub(super) struct Row {
 impl<'a> Inertial<'a> {
     pub(super) fn new(
         algebra: &mut Algebra,
-        mechanism: &'a Mechanism,
-        symbols: &'a Symbols,
-        rates: &'a [Expr],
+        setting: Setting<'a>,
         reactions: &[(Expr, Expr)],
-    ) -> Lowered<Self> {
+    ) -> Outcome<Self> {
+        let (mechanism, symbols) = (setting.mechanism, setting.symbols);
         let mut inertial = Self {
-            mechanism,
-            symbols,
-            rates,
+            setting,
             rotations: List::default(),
             positions: List::default(),
             velocities: List::default(),
@@ -100,7 +80,7 @@ impl<'a> Inertial<'a> {
             if let Some(from) = point.from {
                 position = algebra.graph.add3(inertial.positions[from], position);
             }
-            let velocity = inertial.time().of3(algebra, position);
+            let velocity = setting.rate3(algebra, position);
             inertial.positions.push(position);
             inertial.velocities.push(velocity);
         }
@@ -121,33 +101,24 @@ impl<'a> Inertial<'a> {
                 }
             }
         }
+        algebra.check_size()?;
         Ok(inertial)
     }
 
-    /// Derivatives along the motion, with constant pseudo-velocities.
-    pub(super) fn time(&self) -> TimeDerivative<'a> {
-        TimeDerivative {
-            symbols: self.symbols,
-            rates: self.rates,
-        }
-    }
-
-    pub(super) fn lower(&self, algebra: &mut Algebra, expr: &Spec) -> Lowered<Expr> {
-        let (symbols, rates) = (self.symbols, self.rates);
-        let value = Lowering { symbols, rates }.lower(&mut algebra.graph, expr)?;
-        self.told(algebra, value)
-    }
-
-    /// Substitutes kinematic quantities named in the spec; frames and points contain none.
-    fn told(&self, algebra: &mut Algebra, value: Expr) -> Lowered<Expr> {
-        let is_whole = self.velocities.len() == self.mechanism.points.len();
-        let plain = self.symbols.motions.is_empty() && self.forces.is_empty();
+    /// Lowers an expression and substitutes kinematic quantities that it names; frames and points name none.
+    pub(super) fn lower(&self, algebra: &mut Algebra, expr: &Spec) -> Outcome<Expr> {
+        let Setting {
+            mechanism, symbols, ..
+        } = self.setting;
+        let graph = &mut algebra.graph;
+        let value = self.setting.lower_in(graph, Item::Mechanism, expr)?;
+        let is_whole = self.velocities.len() == mechanism.points.len();
+        let plain = symbols.motions.is_empty() && self.forces.is_empty();
         if plain || !is_whole {
             return Ok(value);
         }
-        let graph = &mut algebra.graph;
         let mut values = self.forces.clone();
-        for &(motion, symbol) in &self.symbols.motions {
+        for &(motion, symbol) in &symbols.motions {
             let value = match motion {
                 Quantity::Position(p, axis, frame) => {
                     self.along(graph, self.positions[p], axis, frame)
@@ -167,7 +138,7 @@ impl<'a> Inertial<'a> {
             values.push((symbol, value));
         }
         let mut told = Substitution::of_parts(graph, &values);
-        told.apply(graph, value).ok_or(DivisionByZero)
+        Ok(algebra.apply(&mut told, &[value])?[0])
     }
 
     /// A component of a vector given in the ground frame.
@@ -178,19 +149,14 @@ impl<'a> Inertial<'a> {
     }
 
     /// A velocity in terms of the generalised velocities: pseudo-velocities are replaced by their definitions.
-    pub(super) fn velocity_along(&self, algebra: &mut Algebra, velocity: &Spec) -> Lowered<Expr> {
+    pub(super) fn velocity_along(&self, algebra: &mut Algebra, velocity: &Spec) -> Outcome<Expr> {
         let velocity = self.lower(algebra, velocity)?;
-        let mut defined = Vec::new();
-        for (speed, &symbol) in (self.mechanism.pseudo_velocities.iter()).zip(&self.symbols.speeds)
-        {
-            defined.push((symbol, self.lower(algebra, &speed.definition)?));
-        }
-        let mut definitions = Substitution::of_parts(&algebra.graph, &defined);
-        let velocity = definitions.apply(&mut algebra.graph, velocity);
-        velocity.ok_or(DivisionByZero)
+        let (speeds, defined) = (&self.setting.symbols.speeds, self.definitions(algebra)?);
+        let mut definitions = replacing(&algebra.graph, speeds, &defined);
+        Ok(algebra.apply(&mut definitions, &[velocity])?[0])
     }
 
-    fn lower3(&self, algebra: &mut Algebra, v: &Components) -> Lowered<Vec3> {
+    fn lower3(&self, algebra: &mut Algebra, v: &Components) -> Outcome<Vec3> {
         let mut lowered = [Graph::ZERO; 3];
         for (target, component) in lowered.iter_mut().zip(v) {
             *target = self.lower(algebra, component)?;
@@ -204,14 +170,14 @@ impl<'a> Inertial<'a> {
         algebra: &mut Algebra,
         frame: FrameId,
         v: &Components,
-    ) -> Lowered<Vec3> {
+    ) -> Outcome<Vec3> {
         let v = self.lower3(algebra, v)?;
         Ok(algebra.graph.mat_vec(&self.rotations[frame], v))
     }
 
     /// ω from Ṙ Rᵀ, which is the matrix of ω ×.
     fn angular_velocity(&self, algebra: &mut Algebra, rotation: &Mat3) -> Vec3 {
-        let rate = rotation.map(|row| self.time().of3(algebra, row));
+        let rate = rotation.map(|row| self.setting.rate3(algebra, row));
         let mut spin = |i: usize, j: usize| algebra.graph.dot(rate[i], rotation[j]);
         [spin(2, 1), spin(0, 2), spin(1, 0)]
     }
@@ -226,7 +192,7 @@ impl<'a> Inertial<'a> {
         let Some(body) = body else {
             return self.velocities[point];
         };
-        let centre = self.mechanism.bodies[body].centre;
+        let centre = self.setting.mechanism.bodies[body].centre;
         let arm = graph.sub3(self.positions[point], self.positions[centre]);
         let turning = graph.cross(self.turning(body), arm);
         graph.add3(self.velocities[centre], turning)
@@ -234,18 +200,18 @@ impl<'a> Inertial<'a> {
 
     /// Angular velocity of a body; zero for a point mass.
     pub(super) fn turning(&self, body: BodyId) -> Vec3 {
-        let frame = self.mechanism.bodies[body].frame;
+        let frame = self.setting.mechanism.bodies[body].frame;
         frame.map_or(vector::ZERO, |frame| self.turning[frame])
     }
 
     /// Mass of a body.
-    pub(super) fn mass(&self, algebra: &mut Algebra, body: BodyId) -> Lowered<Expr> {
-        self.lower(algebra, &self.mechanism.bodies[body].mass)
+    pub(super) fn mass(&self, algebra: &mut Algebra, body: BodyId) -> Outcome<Expr> {
+        self.lower(algebra, &self.setting.mechanism.bodies[body].mass)
     }
 
     /// `I w` of a body, R I Rᵀ w.
-    pub(super) fn momentum(&self, algebra: &mut Algebra, body: BodyId, w: Vec3) -> Lowered<Vec3> {
-        let Some(inertia) = &self.mechanism.bodies[body].inertia else {
+    pub(super) fn momentum(&self, algebra: &mut Algebra, body: BodyId, w: Vec3) -> Outcome<Vec3> {
+        let Some(inertia) = &self.setting.mechanism.bodies[body].inertia else {
             return Ok(vector::ZERO);
         };
         let mut tensor = vector::IDENTITY;
@@ -259,15 +225,18 @@ impl<'a> Inertial<'a> {
     }
 
     /// The definitions of the pseudo-velocities.
-    pub(super) fn definitions(&self, algebra: &mut Algebra) -> Lowered<Vec<Expr>> {
-        let speeds = self.mechanism.pseudo_velocities.iter();
-        speeds.map(|w| self.lower(algebra, &w.definition)).collect()
+    pub(super) fn definitions(&self, algebra: &mut Algebra) -> Outcome<Vec<Expr>> {
+        let speeds = self.setting.mechanism.pseudo_velocities.iter();
+        let definitions = speeds.map(|w| self.lower(algebra, &w.definition));
+        let definitions = definitions.collect::<Outcome<_>>()?;
+        algebra.check_size()?;
+        Ok(definitions)
     }
 
     /// The constraints in the order of the spec.
-    pub(super) fn rows(&self, algebra: &mut Algebra) -> Lowered<Vec<Row>> {
+    pub(super) fn rows(&self, algebra: &mut Algebra) -> Outcome<Vec<Row>> {
         let mut rows = Vec::new();
-        for (constraint, item) in self.mechanism.constraints.entries() {
+        for (constraint, item) in self.setting.mechanism.constraints.entries() {
             let mut row = |value, direction| {
                 rows.push(Row {
                     constraint,
@@ -308,10 +277,11 @@ impl<'a> Inertial<'a> {
                 }
                 ConstraintKind::Position { zero, .. } => {
                     let position = self.lower(algebra, zero)?;
-                    row(self.time().of(algebra, position), vector::IDENTITY[0]);
+                    row(self.setting.rate(algebra, position), vector::IDENTITY[0]);
                 }
             }
         }
+        algebra.check_size()?;
         Ok(rows)
     }
 }

@@ -2,7 +2,7 @@
 
 use appell_spec::mechanism::BodyId;
 
-use super::inertial::{Inertial, Lowered, room};
+use super::inertial::Inertial;
 use super::loads::{Which, efforts, generalized_force};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::finding::Outcome;
@@ -44,12 +44,13 @@ pub(super) fn kane(
     actual: &[Expr],
     given: &[(usize, Expr)],
 ) -> Outcome<Kane> {
-    let speeds = &inertial.symbols.speeds;
-    let mut bodies = Vec::with_capacity(inertial.mechanism.bodies.len());
-    for body in inertial.mechanism.bodies.ids() {
-        bodies.push(room(algebra, |algebra| partial(algebra, inertial, body))?);
+    let speeds = &inertial.setting.symbols.speeds;
+    let mut bodies = Vec::with_capacity(inertial.setting.mechanism.bodies.len());
+    for body in inertial.setting.mechanism.bodies.ids() {
+        bodies.push(partial(algebra, inertial, body)?);
+        algebra.check_size()?;
     }
-    let loads = room(algebra, |algebra| efforts(algebra, inertial, Which::All))?;
+    let loads = efforts(algebra, inertial, Which::All)?;
     let graph = &mut algebra.graph;
     let mut mass_matrix = vec![vec![Graph::ZERO; speeds.len()]; speeds.len()];
     let mut bias = Vec::with_capacity(speeds.len());
@@ -73,8 +74,8 @@ pub(super) fn kane(
     }
     let mut forces = Vec::with_capacity(speeds.len());
     for &speed in speeds {
-        let force = |algebra: &mut Algebra| Ok(generalized_force(algebra, &loads, speed));
-        forces.push(room(algebra, force)?);
+        forces.push(generalized_force(algebra, &loads, speed));
+        algebra.check_size()?;
     }
     let graph = &mut algebra.graph;
     for &(speed, rate) in given {
@@ -127,26 +128,23 @@ fn give(
     }
 }
 
-fn partial(algebra: &mut Algebra, inertial: &Inertial<'_>, body: BodyId) -> Lowered<Partial> {
-    let centre = inertial.mechanism.bodies[body].centre;
+fn partial(algebra: &mut Algebra, inertial: &Inertial<'_>, body: BodyId) -> Outcome<Partial> {
+    let centre = inertial.setting.mechanism.bodies[body].centre;
     let v = inertial.velocity(&mut algebra.graph, None, centre);
     let w = inertial.turning(body);
     let mass = inertial.mass(algebra, body)?;
     let mut along = |v: Vec3| -> Vec<Vec3> {
-        let speeds = inertial.symbols.speeds.iter();
+        let speeds = inertial.setting.symbols.speeds.iter();
         speeds
             .map(|&speed| v.map(|c| algebra.derivative(c, speed)))
             .collect()
     };
     let (partial_v, partial_w) = (along(v), along(w));
     let momenta = partial_w.iter();
-    let momenta: Lowered<Vec<Vec3>> = momenta
+    let momenta: Outcome<Vec<Vec3>> = momenta
         .map(|&w| inertial.momentum(algebra, body, w))
         .collect();
-    let (a, alpha) = (
-        inertial.time().of3(algebra, v),
-        inertial.time().of3(algebra, w),
-    );
+    let [a, alpha] = [v, w].map(|velocity| inertial.setting.rate3(algebra, velocity));
     let growth = inertial.momentum(algebra, body, alpha)?;
     let momentum = inertial.momentum(algebra, body, w)?;
     let gyroscopic = algebra.graph.cross(w, momentum);

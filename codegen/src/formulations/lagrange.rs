@@ -2,13 +2,12 @@
 //!
 //! T is expressed in all generalised velocities, before constraints are applied.
 
-use super::inertial::{Inertial, Lowered, room};
+use super::inertial::Inertial;
 use super::loads::{Which, efforts, generalized_force, potential};
-use crate::mechanics::algebra::Algebra;
-use crate::mechanics::expressions::DivisionByZero;
+use crate::mechanics::algebra::{Algebra, replacing};
 use crate::mechanics::finding::Outcome;
 use crate::mechanics::rank::{LinearRow, Standing, standings};
-use crate::symbolic::{Expr, Graph, Rational, Substitution};
+use crate::symbolic::{Expr, Graph, Rational};
 
 /// The solution of Lagrange's equations.
 pub(super) struct Lagrange {
@@ -37,20 +36,16 @@ pub(super) fn lagrange(
 ) -> Outcome<Lagrange> {
     let n = rates.len();
     let dynamics = dynamics(algebra, inertial)?;
-    let rows = room(algebra, |algebra| inertial.rows(algebra))?;
+    let rows = inertial.rows(algebra)?;
     let mut constraints = Vec::with_capacity(rows.len());
     for row in &rows {
-        let of_row = |algebra: &mut Algebra| Ok(differentiated(algebra, inertial, row.value));
-        constraints.push(room(algebra, of_row)?);
+        constraints.push(differentiated(algebra, inertial, row.value)?);
     }
-    let definitions = room(algebra, |algebra| inertial.definitions(algebra))?;
+    let definitions = inertial.definitions(algebra)?;
     for &(speed, rate) in given {
-        let of_speed = |algebra: &mut Algebra| {
-            let mut row = differentiated(algebra, inertial, definitions[speed]);
-            row.right = algebra.graph.add(row.right, rate);
-            Ok(row)
-        };
-        constraints.push(room(algebra, of_speed)?);
+        let mut row = differentiated(algebra, inertial, definitions[speed])?;
+        row.right = algebra.graph.add(row.right, rate);
+        constraints.push(row);
     }
     let active = independent(algebra, &constraints);
     let moving = constraints.iter().filter(|row| row.moves(algebra)).count();
@@ -70,15 +65,10 @@ pub(super) fn lagrange(
         }
         right.push(constraints[row].right);
     }
-    let symbols = inertial.symbols.rates.iter().copied();
-    let in_terms_of_speeds: Vec<(Expr, Expr)> = symbols.zip(rates.iter().copied()).collect();
-    let mut allowed = Substitution::of_parts(&algebra.graph, &in_terms_of_speeds);
+    let mut allowed = replacing(&algebra.graph, &inertial.setting.symbols.rates, rates);
     for entry in matrix.iter_mut().chain(&mut right) {
-        let in_motion = |algebra: &mut Algebra| {
-            let entry = allowed.apply(&mut algebra.graph, *entry);
-            entry.ok_or(DivisionByZero)
-        };
-        *entry = room(algebra, in_motion)?;
+        *entry = algebra.apply(&mut allowed, &[*entry])?[0];
+        algebra.check_size()?;
     }
     let solution = algebra.graph.solve_numerically(matrix, right);
     let mut multipliers = vec![None; rows.len()];
@@ -96,39 +86,30 @@ pub(super) fn lagrange(
 
 /// `M q̈ = Q - ∂V/∂q + ∂T/∂q - (d/dt ∂T/∂q̇ without q̈)`, one equation per coordinate.
 fn dynamics(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Outcome<Vec<Equation>> {
-    let energy = |algebra: &mut Algebra| kinetic_energy(algebra, inertial);
-    let kinetic = room(algebra, energy)?;
-    let potential = room(algebra, |algebra| potential(algebra, inertial))?;
-    let loads = |algebra: &mut Algebra| efforts(algebra, inertial, Which::WithoutPotential);
-    let loads = room(algebra, loads)?;
-    let symbols = inertial.symbols;
+    let kinetic = kinetic_energy(algebra, inertial)?;
+    let potential = potential(algebra, inertial)?;
+    let loads = efforts(algebra, inertial, Which::WithoutPotential)?;
+    let symbols = inertial.setting.symbols;
     let mut equations = Vec::with_capacity(symbols.coordinates.len());
     for (&q, &rate) in symbols.coordinates.iter().zip(&symbols.rates) {
-        let equation = |algebra: &mut Algebra| {
-            let momentum = algebra.derivative(kinetic, rate);
-            let Equation {
-                coefficients,
-                right: minus_drift,
-            } = differentiated(algebra, inertial, momentum);
-            let slope = algebra.derivative(kinetic, q);
-            let pull = algebra.derivative(potential, q);
-            let force = generalized_force(algebra, &loads, rate);
-            let graph = &mut algebra.graph;
-            let pull = graph.neg(pull);
-            Ok(Equation {
-                coefficients,
-                right: graph.sum(&[force, pull, slope, minus_drift]),
-            })
-        };
-        equations.push(room(algebra, equation)?);
+        let momentum = algebra.derivative(kinetic, rate);
+        let mut equation = differentiated(algebra, inertial, momentum)?;
+        let slope = algebra.derivative(kinetic, q);
+        let pull = algebra.derivative(potential, q);
+        let force = generalized_force(algebra, &loads, rate);
+        let graph = &mut algebra.graph;
+        let pull = graph.neg(pull);
+        equation.right = graph.sum(&[force, pull, slope, equation.right]);
+        algebra.check_size()?;
+        equations.push(equation);
     }
     Ok(equations)
 }
 
 /// T = Σ ½ m v·v + ½ ω·I ω
-fn kinetic_energy(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lowered<Expr> {
+fn kinetic_energy(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Outcome<Expr> {
     let mut parts = Vec::new();
-    for (index, body) in inertial.mechanism.bodies.entries() {
+    for (index, body) in inertial.setting.mechanism.bodies.entries() {
         let v = inertial.velocity(&mut algebra.graph, None, body.centre);
         let square = algebra.graph.dot(v, v);
         let mass = inertial.mass(algebra, index)?;
@@ -138,19 +119,21 @@ fn kinetic_energy(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lowered<Exp
         parts.push(algebra.graph.dot(w, momentum));
     }
     let twice = algebra.graph.sum(&parts);
+    algebra.check_size()?;
     Ok(algebra.graph.scale(&Rational::new(1, 2), twice))
 }
 
 /// The rate of a function of coordinates, generalised velocities and time:
 /// `Σ ∂f/∂q̇ q̈ = df/dt - (∂f/∂q q̇ + ∂f/∂t)`, with the terms without q̈ for df/dt = 0.
-fn differentiated(algebra: &mut Algebra, inertial: &Inertial<'_>, f: Expr) -> Equation {
-    let rates = inertial.symbols.rates.iter();
+fn differentiated(algebra: &mut Algebra, inertial: &Inertial<'_>, f: Expr) -> Outcome<Equation> {
+    let rates = inertial.setting.symbols.rates.iter();
     let coefficients = rates.map(|&rate| algebra.derivative(f, rate)).collect();
-    let drift = inertial.time().of(algebra, f);
-    Equation {
+    let drift = inertial.setting.rate(algebra, f);
+    algebra.check_size()?;
+    Ok(Equation {
         coefficients,
         right: algebra.graph.neg(drift),
-    }
+    })
 }
 
 impl Equation {
@@ -166,15 +149,8 @@ fn independent(algebra: &mut Algebra, rows: &[Equation]) -> Vec<usize> {
     let mut linear = Vec::with_capacity(rows.len());
     for row in rows {
         let coefficients = row.coefficients.iter();
-        let Algebra { graph, test, .. } = &mut *algebra;
-        let written = |&c: &Expr| {
-            if test.is_zero(graph, c) {
-                Graph::ZERO
-            } else {
-                c
-            }
-        };
-        linear.push(LinearRow::homogeneous(coefficients.map(written).collect()));
+        let coefficients = coefficients.map(|&c| algebra.unless_zero(c));
+        linear.push(LinearRow::homogeneous(coefficients.collect()));
     }
     let standings = standings(algebra, &linear).into_iter().enumerate();
     let independent = standings.filter(|(_, standing)| *standing == Standing::Independent);

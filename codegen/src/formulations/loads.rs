@@ -3,8 +3,9 @@
 use appell_spec::expr::Expr as Spec;
 use appell_spec::mechanism::{Connection, LoadKind, Spring};
 
-use super::inertial::{Inertial, Lowered};
+use super::inertial::Inertial;
 use crate::mechanics::algebra::Algebra;
+use crate::mechanics::finding::Outcome;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational};
 
@@ -30,8 +31,8 @@ pub(super) fn efforts(
     algebra: &mut Algebra,
     inertial: &Inertial<'_>,
     which: Which,
-) -> Lowered<Vec<Effort>> {
-    let mechanism = inertial.mechanism;
+) -> Outcome<Vec<Effort>> {
+    let mechanism = inertial.setting.mechanism;
     let mut all = Vec::new();
     for load in &mechanism.loads {
         match &load.kind {
@@ -63,8 +64,7 @@ pub(super) fn efforts(
                 on,
                 body,
                 reaction_on,
-                frame,
-                vector,
+                ..
             } => {
                 let mut velocity = inertial.velocity(&mut algebra.graph, *body, *on);
                 if let Some(other) = reaction_on {
@@ -72,38 +72,35 @@ pub(super) fn efforts(
                     velocity = algebra.graph.sub3(velocity, other);
                 }
                 all.push(Effort {
-                    force: inertial.in_ground(algebra, *frame, vector)?,
+                    force: acting(algebra, inertial, &load.kind)?,
                     velocity,
                     external: reaction_on.is_none(),
                 });
             }
             LoadKind::Torque {
-                on,
-                reaction_on,
-                frame,
-                vector,
+                on, reaction_on, ..
             } => {
                 let mut velocity = inertial.turning(*on);
                 if let Some(other) = reaction_on {
                     velocity = algebra.graph.sub3(velocity, inertial.turning(*other));
                 }
                 all.push(Effort {
-                    force: inertial.in_ground(algebra, *frame, vector)?,
+                    force: acting(algebra, inertial, &load.kind)?,
                     velocity,
                     external: false,
                 });
             }
-            LoadKind::Generalized { velocity, force } => {
-                let force = inertial.lower(algebra, force)?;
+            LoadKind::Generalized { velocity, .. } => {
                 let velocity = inertial.velocity_along(algebra, velocity)?;
                 all.push(Effort {
-                    force: [force, Graph::ZERO, Graph::ZERO],
+                    force: acting(algebra, inertial, &load.kind)?,
                     velocity: [velocity, Graph::ZERO, Graph::ZERO],
                     external: false,
                 });
             }
         }
     }
+    algebra.check_size()?;
     Ok(all)
 }
 
@@ -112,7 +109,7 @@ pub(super) fn acting(
     algebra: &mut Algebra,
     inertial: &Inertial<'_>,
     load: &LoadKind,
-) -> Lowered<Vec3> {
+) -> Outcome<Vec3> {
     let force = match load {
         // Cannot be named in expressions.
         LoadKind::Gravity { .. } => Graph::ZERO,
@@ -141,11 +138,11 @@ struct Line {
 }
 
 impl Line {
-    fn new(algebra: &mut Algebra, inertial: &Inertial<'_>, between: &Connection) -> Lowered<Self> {
+    fn new(algebra: &mut Algebra, inertial: &Inertial<'_>, between: &Connection) -> Outcome<Self> {
         Ok(match between {
             Connection::Along(displacement) => {
                 let length = inertial.lower(algebra, displacement)?;
-                let velocity = inertial.time().of(algebra, length);
+                let velocity = inertial.setting.rate(algebra, length);
                 Self {
                     length,
                     direction: [Graph::ONE, Graph::ZERO, Graph::ZERO],
@@ -176,7 +173,7 @@ impl Line {
         inertial: &Inertial<'_>,
         spring: Option<&Spring>,
         damping: Option<&Spec>,
-    ) -> Lowered<Expr> {
+    ) -> Outcome<Expr> {
         let mut tension = Vec::new();
         if let Some(Spring { stiffness, relaxed }) = spring {
             let k = inertial.lower(algebra, stiffness)?;
@@ -218,8 +215,8 @@ pub(super) fn generalized_force(
 }
 
 /// Potential energy of gravity and springs.
-pub(super) fn potential(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lowered<Expr> {
-    let mechanism = inertial.mechanism;
+pub(super) fn potential(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Outcome<Expr> {
+    let mechanism = inertial.setting.mechanism;
     let mut parts = Vec::new();
     for load in &mechanism.loads {
         match &load.kind {

@@ -35,7 +35,7 @@ impl Points {
     /// Angles and lengths without a range are within ±1.2, velocities within ±2, inputs and signals within ±5;
     /// parameters are within 30 % of the spec's.
     pub(super) fn new(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Self {
-        let mut random = Random(SplitMix64::seed_from_u64(seed(mechanism)));
+        let mut random = SplitMix64::seed_from_u64(seed(mechanism));
         let mut domains: Vec<(Expr, [f64; 2])> = Vec::new();
         for (&symbol, q) in symbols.coordinates.iter().zip(&mechanism.coordinates) {
             // The central 90 %: at the ends of a range the equations may be singular.
@@ -74,8 +74,8 @@ impl Points {
             let mut point = vec![f64::NAN; graph.symbol_count()];
             let mut neighbour = point.clone();
             for (place, &(_, range)) in places.iter().zip(&domains) {
-                let value = random.between(range);
-                let change = random.between([-DISTURBANCE, DISTURBANCE]);
+                let value = between(&mut random, range);
+                let change = between(&mut random, [-DISTURBANCE, DISTURBANCE]);
                 point[place.0 as usize] = value;
                 neighbour[place.0 as usize] = value * (1.0 + change);
             }
@@ -130,11 +130,7 @@ impl Points {
     }
 }
 
-struct Random(SplitMix64);
-
-impl Random {
-    fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
-        let fraction = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-        low + (high - low) * fraction
-    }
+fn between(random: &mut SplitMix64, [low, high]: [f64; 2]) -> f64 {
+    let fraction = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    low + (high - low) * fraction
 }

@@ -8,7 +8,6 @@ use appell_spec::mechanism::Mechanism;
 
 use super::structure::Structure;
 use crate::mechanics::Derivation;
-use crate::mechanics::expressions::Lowering;
 use crate::symbolic::{Expr, Graph, Substitution, SymbolId};
 
 /// Why conditions do not define a motion.
@@ -178,14 +177,8 @@ impl Builder<'_> {
 
     /// Rates determined by the known pseudo-velocities.
     fn rates_that_follow(&mut self) -> Result<(), SteadyError> {
-        for (k, symbol) in self
-            .derivation
-            .symbols
-            .rates
-            .clone()
-            .into_iter()
-            .enumerate()
-        {
+        let rates = self.derivation.symbols.rates.clone();
+        for (k, symbol) in rates.into_iter().enumerate() {
             let rate = self.value(self.derivation.coordinate_rates[k])?;
             let open = self.open_speeds();
             if self.motion.gives(symbol) || !self.depends(rate, &open).is_empty() {
@@ -201,15 +194,11 @@ impl Builder<'_> {
     /// Expresses the other pseudo-velocities by their definitions, if these contain as many constant rates.
     fn speeds_in_rates(&mut self) -> Result<(), SteadyError> {
         let symbols = self.derivation.symbols.clone();
-        let lowering = Lowering {
-            symbols: &symbols,
-            rates: &symbols.rates,
-        };
         let constant = self.constant_rates()?;
         let (mut written, mut used) = (Vec::new(), Vec::new());
         for (&speed, spec) in symbols.speeds.iter().zip(&self.mechanism.pseudo_velocities) {
             let graph = &mut self.derivation.algebra.graph;
-            let Ok(definition) = lowering.lower(graph, &spec.definition) else {
+            let Ok(definition) = symbols.lower(graph, &spec.definition) else {
                 continue;
             };
             if self.motion.gives(speed) {
@@ -267,14 +256,8 @@ impl Builder<'_> {
 
     /// Checks that given rates agree with the pseudo-velocities.
     fn check_given_rates(&mut self) -> Result<(), SteadyError> {
-        for (k, symbol) in self
-            .derivation
-            .symbols
-            .rates
-            .clone()
-            .into_iter()
-            .enumerate()
-        {
+        let rates = self.derivation.symbols.rates.clone();
+        for (k, symbol) in rates.into_iter().enumerate() {
             if !self.given_rates.contains(&symbol) {
                 continue;
             }

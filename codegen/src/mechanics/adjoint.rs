@@ -4,11 +4,12 @@
 //! The gradient of a filter or of a shooting method needs second derivatives of the rates, but only as weighted
 //! sums. One reverse sweep gives the gradient of such a sum in all variables.
 
-use appell_runtime::model::{ModelInfo, Quantity};
+use appell_runtime::model::ModelInfo;
 use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
 use super::arguments::input_symbols;
+use super::assemble::{listed, paired};
 use super::finding::Outcome;
 use super::symbols::ids;
 use crate::program::{Array, Layout, Space};
@@ -114,19 +115,4 @@ impl Derivation {
         };
         parts.map(array).into()
     }
-}
-
-/// `symbol_name` for every quantity.
-fn listed(symbol: &str, quantities: &[Quantity]) -> Vec<String> {
-    let names = quantities.iter();
-    names
-        .map(|quantity| format!("{symbol}_{}", quantity.name))
-        .collect()
-}
-
-/// `symbol_row_column` for every pair, row by row.
-fn paired(symbol: &str, rows: &[Quantity], columns: &[Quantity]) -> Vec<String> {
-    let rows = rows.iter();
-    rows.flat_map(|row| listed(&format!("{symbol}_{}", row.name), columns))
-        .collect()
 }

@@ -6,7 +6,7 @@ use appell_spec::mechanism::Mechanism;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
 
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, defined};
 use super::quaternion::quaternions;
 use super::symbols::{Symbols, ids};
 
@@ -120,6 +120,17 @@ impl Algebra {
             self.derivatives.len() - 1
         });
         self.derivatives[place].1.of(&mut self.graph, expr)
+    }
+
+    /// [`Algebra::derivative`] of each component.
+    pub fn derivative3(&mut self, v: Vec3, symbol: Expr) -> Vec3 {
+        v.map(|component| self.derivative(component, symbol))
+    }
+
+    /// Expressions after a substitution.
+    pub fn apply(&mut self, substitution: &mut Substitution, exprs: &[Expr]) -> Outcome<Vec<Expr>> {
+        let applied = substitution.apply_all(&mut self.graph, exprs);
+        defined(applied, Item::Mechanism)
     }
 
     /// The expression, or the number zero if it vanishes identically, so that rounding cannot make it appear to
@@ -249,11 +260,7 @@ impl Algebra {
             slopes.push(slope);
         }
         for (cofactors, &right) in relation.cofactors.iter().zip(&relation.right) {
-            let over = slopes.iter().zip(cofactors);
-            let over: Vec<Expr> = over
-                .map(|(&c, &cofactor)| self.graph.mul(c, cofactor))
-                .collect();
-            let over = self.graph.sum(&over);
+            let over = scalar_product(&mut self.graph, &slopes, cofactors);
             let over = self.shortest(over);
             let factor = self.graph.div(over, relation.determinant);
             let factor = self.shortest(factor);
@@ -334,6 +341,18 @@ pub fn seed(mechanism: &Mechanism) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
         })
+}
+
+/// Replaces each of `parts` by its value.
+pub fn replacing(graph: &Graph, parts: &[Expr], values: &[Expr]) -> Substitution {
+    let pairs = parts.iter().copied().zip(values.iter().copied());
+    Substitution::of_parts(graph, &pairs.collect::<Vec<_>>())
+}
+
+/// `Σ a b`
+pub fn scalar_product(graph: &mut Graph, a: &[Expr], b: &[Expr]) -> Expr {
+    let products: Vec<Expr> = a.iter().zip(b).map(|(&a, &b)| graph.mul(a, b)).collect();
+    graph.sum(&products)
 }
 
 /// A vector with names for its components.

@@ -8,6 +8,7 @@ use appell_spec::mechanism::{ConstraintId, FrameId, Mechanism};
 
 use super::Derivation;
 use super::arguments::input_symbols;
+use super::expressions::Setting;
 use super::finding::Outcome;
 use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energies, acceleration_energy,
@@ -26,8 +27,8 @@ use crate::program::{Array, Function, FunctionKind, Layout, Space};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
 pub use functions::{Functions, program};
-pub(super) use labels::by_speed;
 use labels::{Source, embedded};
+pub(super) use labels::{by_speed, listed, paired};
 
 impl Derivation {
     /// The results of one function.
@@ -56,14 +57,8 @@ impl Derivation {
             }
             FunctionKind::GeneralizedForces => {
                 let forces = self.forces.clone();
-                let about = "Pseudo-forces.";
-                vec![by_speed(
-                    "force",
-                    "generalized_forces",
-                    about,
-                    speeds,
-                    forces,
-                )]
+                let (name, about) = ("generalized_forces", "Pseudo-forces.");
+                vec![by_speed("force", name, about, speeds, forces)]
             }
             FunctionKind::Rates => vec![Array::rates(info, self.rates())],
             FunctionKind::Jacobians => {
@@ -97,10 +92,8 @@ impl Derivation {
                 } = &self.positions;
                 let columns = coordinates.iter().map(|q| q.name.to_string());
                 let layout = Layout::Matrix(names.len(), coordinates.len());
-                let labels = names.iter().flat_map(|name| {
-                    let label = move |q: &Quantity| format!("d_{name}_d_{}", q.name);
-                    coordinates.iter().map(label)
-                });
+                let rows = names.iter();
+                let labels = rows.flat_map(|name| listed(&format!("d_{name}_d"), coordinates));
                 let count = Layout::List(names.len());
                 vec![
                     Array::new("residual", "f(q, t).", count, residual.clone())
@@ -149,13 +142,9 @@ impl Derivation {
         let entries = self.gibbs.mass_matrix.concat();
         let all = 0..entries.len();
         let layout = Layout::Matrix(speeds.len(), speeds.len());
-        let mass = letters::mass(mechanism);
-        let labels = speeds.iter().flat_map(|row| {
-            let label = move |column: &Quantity| format!("{mass}_{}_{}", row.name, column.name);
-            speeds.iter().map(label)
-        });
+        let labels = paired(letters::mass(mechanism), speeds, speeds);
         let array = Array::new("mass_matrix", "M.", layout, entries);
-        array.labelled(labels).under("Entries.", all)
+        array.labelled(labels.into_iter()).under("Entries.", all)
     }
 
     fn bias(&self, speeds: &[Quantity]) -> Array {
@@ -309,54 +298,35 @@ impl Derivation {
         if !self.dependent.values.is_empty() {
             return self.bodies.clone();
         }
-        motions_in_ground(
-            &mut self.algebra,
-            mechanism,
-            &self.symbols,
-            &self.kinematics,
-            &self.velocities.rates,
-            &self.bodies,
-        )
+        let setting = Setting::new(mechanism, &self.symbols, &self.velocities.rates);
+        motions_in_ground(&mut self.algebra, setting, &self.kinematics, &self.bodies)
     }
 
     /// Normals and friction of the contacts, unless they are constant.
     fn surfaces(&self) -> Vec<Array> {
         let graph = &self.algebra.graph;
-        if self
-            .contacts
-            .iter()
-            .all(|contact| contact.is_constant(graph))
-        {
+        let mut contacts = self.contacts.iter();
+        if contacts.all(|contact| contact.is_constant(graph)) {
             return Vec::new();
         }
-        let names: Vec<String> = self
-            .contacts
-            .iter()
-            .map(|contact| self.constraints.reactions[contact.place].name.to_string())
-            .collect();
+        let places = self.contacts.iter().map(|contact| contact.place);
+        let names = places.map(|place| self.constraints.reactions[place].name.to_string());
+        let names: Vec<String> = names.collect();
         let normals = self.contacts.iter().flat_map(|contact| contact.normal);
         let friction = self.contacts.iter().map(|contact| contact.friction);
         let friction = friction.map(|friction| friction.unwrap_or(Graph::ZERO));
         let count = names.len();
         let labels = |name: &String| ["x", "y", "z"].map(|axis| format!("n_{name}_{axis}"));
         let axes = ["x", "y", "z"].map(|axis| format!("ground {axis}"));
+        let (matrix, list) = (Layout::Matrix(count, 3), Layout::List(count));
+        let (of_normals, of_friction) = ("Normals in the ground.", "Coefficients of friction.");
         vec![
-            Array::new(
-                "normals",
-                "Normals in the ground.",
-                Layout::Matrix(count, 3),
-                normals.collect(),
-            )
-            .labelled(names.iter().flat_map(labels))
-            .with_names(names.clone(), axes.to_vec()),
-            Array::new(
-                "friction",
-                "Coefficients of friction.",
-                Layout::List(count),
-                friction.collect(),
-            )
-            .labelled(names.iter().map(|name| format!("friction_{name}")))
-            .with_names(names.clone(), Vec::new()),
+            Array::new("normals", of_normals, matrix, normals.collect())
+                .labelled(names.iter().flat_map(labels))
+                .with_names(names.clone(), axes.to_vec()),
+            Array::new("friction", of_friction, list, friction.collect())
+                .labelled(names.iter().map(|name| format!("friction_{name}")))
+                .with_names(names.clone(), Vec::new()),
         ]
     }
 
@@ -365,8 +335,7 @@ impl Derivation {
         let bodies = self.bodies_in_ground(mechanism);
         reactions::reactions(
             &mut self.algebra,
-            mechanism,
-            &self.symbols,
+            Setting::free(mechanism, &self.symbols),
             &self.constraints,
             &self.velocities.violating,
             &bodies,
@@ -380,20 +349,12 @@ impl Derivation {
         let forces = self.reactions(mechanism)?;
         let layout = Layout::Rows(Space::Reactions, 3);
         let reactions = self.constraints.reactions.iter();
-        let places: Vec<String> = reactions
-            .map(|reaction| reaction.name.to_string())
-            .collect();
+        let places: Vec<String> = reactions.map(|at| at.name.to_string()).collect();
         let force = letters::reaction(mechanism);
-        let labels = places
-            .iter()
-            .flat_map(|place| ["x", "y", "z"].map(|axis| format!("{force}_{place}_{axis}")));
-        let mut array = Array::new(
-            "forces",
-            "Reactions in the ground.",
-            layout,
-            forces.concat(),
-        )
-        .labelled(labels);
+        let label = |place: &String| ["x", "y", "z"].map(|axis| format!("{force}_{place}_{axis}"));
+        let about = "Reactions in the ground.";
+        let mut array = Array::new("forces", about, layout, forces.concat())
+            .labelled(places.iter().flat_map(label));
         for (i, place) in places.iter().enumerate() {
             array = array.under(&format!("Reaction `{place}`."), 3 * i..3 * i + 3);
         }
@@ -416,10 +377,8 @@ impl Derivation {
         }
         let parts: Vec<Expr> = results.iter().map(|r| r.entries[0]).collect();
         let total = self.algebra.graph.sum(&parts);
-        results.insert(
-            0,
-            Array::scalar("total", "Sum over the bodies, in W/s.", total),
-        );
+        let total = Array::scalar("total", "Sum over the bodies, in W/s.", total);
+        results.insert(0, total);
         results
     }
 

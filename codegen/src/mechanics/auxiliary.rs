@@ -11,7 +11,7 @@ use appell_spec::Code;
 use appell_spec::expr::Quantity;
 use appell_spec::mechanism::{ConstraintId, CoordinateId, Mechanism, ORIGIN, PointId};
 
-use super::algebra::Algebra;
+use super::algebra::{Algebra, scalar_product};
 use super::finding::{Finding, Item};
 use super::frames::{FrameVector, Frames};
 use super::kinematics::{Carried, root_of};
@@ -36,10 +36,8 @@ pub struct AuxiliaryMotion {
 impl AuxiliaryMotion {
     /// The velocities of the moving subtrees for a given rate.
     pub fn at(&self, graph: &mut Graph, rate: Expr) -> Vec<Carried> {
-        let v = FrameVector {
-            frame: self.along.frame,
-            v: graph.scale3(rate, self.along.v),
-        };
+        let v = graph.scale3(rate, self.along.v);
+        let v = FrameVector::new(self.along.frame, v);
         let carried = |&root| Carried { root, v };
         self.roots.iter().map(carried).collect()
     }
@@ -52,7 +50,7 @@ impl AuxiliaryMotion {
         let frame = self.along.frame;
         let direction = frames.express(&mut algebra.graph, row.along, frame);
         let gain = algebra.graph.dot(direction, self.along.v);
-        tidy(algebra, gain)
+        algebra.shortest(gain)
     }
 }
 
@@ -200,14 +198,11 @@ impl AuxiliaryMotions {
         let graph = &mut algebra.graph;
         let mut violations: Vec<Expr> = factors.into_iter().map(|f| graph.neg(f)).collect();
         violations[row] = Graph::ONE;
-        let gain = |motion: &AuxiliaryMotion| {
-            let parts = motion.gains.iter().zip(&violations);
-            let parts: Vec<Expr> = parts.map(|(&gain, &v)| graph.mul(gain, v)).collect();
-            graph.sum(&parts)
-        };
-        let gains: Vec<Expr> = self.motions.iter().map(gain).collect();
+        let motions = self.motions.iter();
+        let gains = motions.map(|motion| scalar_product(graph, &motion.gains, &violations));
+        let gains: Vec<Expr> = gains.collect();
         Equation {
-            gains: gains.into_iter().map(|gain| tidy(algebra, gain)).collect(),
+            gains: gains.into_iter().map(|e| algebra.shortest(e)).collect(),
             violations,
         }
     }
@@ -232,7 +227,7 @@ impl Equation {
         for (value, &other) in own.zip(solved.gains.iter().chain(&solved.violations)) {
             let part = algebra.graph.mul(share, other);
             let rest = algebra.graph.sub(*value, part);
-            *value = tidy(algebra, rest);
+            *value = algebra.shortest(rest);
         }
     }
 
@@ -243,15 +238,6 @@ impl Equation {
             let quotient = algebra.graph.div(*value, pivot);
             *value = algebra.shortest(quotient);
         }
-    }
-}
-
-/// The shortest form; zero if it vanishes identically.
-fn tidy(algebra: &mut Algebra, expr: Expr) -> Expr {
-    if algebra.test.is_zero(&algebra.graph, expr) {
-        Graph::ZERO
-    } else {
-        algebra.shortest(expr)
     }
 }
 

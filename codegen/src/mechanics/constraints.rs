@@ -2,24 +2,20 @@
 
 use appell_runtime::model::Reaction as Reported;
 use appell_spec::Code;
-use appell_spec::mechanism::{
-    BodyId, ConstraintId, ConstraintKind, FrameId, GROUND, Mechanism, PointId,
-};
+use appell_spec::mechanism::{BodyId, ConstraintId, ConstraintKind, GROUND, Mechanism, PointId};
 use appell_spec::units::{Dimension, Unit};
 
 use super::algebra::Algebra;
 use super::auxiliary::AuxiliaryMotions;
-use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Finding, Item, Outcome, defined, unless_any};
 use super::frames::FrameVector;
 use super::kinematics::{Kinematics, root_of};
 use super::motions::told;
 use super::quaternion::is_norm;
 use super::redundancy::leave_out;
 use super::row::{Reaction, Row};
-use super::symbols::Symbols;
-use super::time::TimeDerivative;
-use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 
 /// All constraints of a mechanism.
@@ -54,19 +50,18 @@ impl Constraints {
 /// Constraint rows with symbols for q̇, tested for rows that geometry already embeds.
 pub fn constraints(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     kinematics: &Kinematics,
     intervals: &mut Intervals,
 ) -> Outcome<Constraints> {
+    let mechanism = setting.mechanism;
     let mut places: Vec<Place> = Vec::new();
     let (mut rows, mut findings) = (Vec::new(), Vec::new());
     for index in by_precedence(mechanism) {
-        let scalars = scalar_rows(algebra, mechanism, symbols, kinematics, index);
-        let (place, scalars) = match scalars {
+        let (place, scalars) = match scalar_rows(algebra, setting, kinematics, index) {
             Ok(scalars) => scalars,
-            Err(finding) => {
-                findings.push(finding);
+            Err(undefined) => {
+                findings.extend(undefined);
                 continue;
             }
         };
@@ -76,9 +71,9 @@ pub fn constraints(
             places.len() - 1
         });
         for scalar in scalars {
-            match row(algebra, mechanism, symbols, index, place, scalar) {
+            match row(algebra, setting, index, place, scalar) {
                 Ok(row) => rows.push(row),
-                Err(finding) => findings.push(finding),
+                Err(undefined) => findings.extend(undefined),
             }
         }
     }
@@ -87,9 +82,7 @@ pub fn constraints(
         Ok(left_out) => warnings.extend(left_out),
         Err(refused) => findings.extend(refused),
     }
-    if !findings.is_empty() {
-        return Err(findings);
-    }
+    unless_any(findings)?;
     let auxiliary = AuxiliaryMotions::new(algebra, mechanism, &kinematics.frames, intervals, &rows);
     let names: Vec<String> = places.iter().map(|place| place.name(mechanism)).collect();
     warnings.extend(auxiliary.findings(mechanism, &rows, &names));
@@ -172,10 +165,7 @@ struct Scalar {
 impl Scalar {
     /// The row of a constraint without a point.
     fn without_point(name: &str, value: Expr) -> Self {
-        let along = FrameVector {
-            frame: GROUND,
-            v: vector::IDENTITY[0],
-        };
+        let along = FrameVector::unit(GROUND, 0);
         Self {
             name: name.to_owned(),
             value,
@@ -189,18 +179,13 @@ impl Scalar {
 /// The scalar rows of one constraint, and where its reaction acts.
 fn scalar_rows(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     kinematics: &Kinematics,
     index: ConstraintId,
-) -> Result<(Place, Vec<Scalar>), Finding> {
+) -> Outcome<(Place, Vec<Scalar>)> {
+    let (mechanism, symbols) = (setting.mechanism, setting.symbols);
     let constraint = &mechanism.constraints[index];
     let item = Item::Constraint(index);
-    let lowering = Lowering {
-        symbols,
-        rates: &symbols.rates,
-    };
-    let zero = |_| division_by_zero(item);
     let single = |value| Scalar::without_point(&constraint.name, value);
     Ok(match &constraint.kind {
         ConstraintKind::Rolling {
@@ -211,22 +196,33 @@ fn scalar_rows(
             ..
         } => {
             let frame = normal.map_or(GROUND, |normal| normal.frame);
-            let contact = Rolling {
-                body: *body,
-                on: *on,
-                point: *contact,
-            };
-            let name = &constraint.name;
-            let rows = rolling_rows(algebra, mechanism, kinematics, name, contact, frame);
-            (Place::Point(contact.point), rows)
+            let graph = &mut algebra.graph;
+            let mut v = kinematics.material_velocity(graph, Some(*body), *contact, frame);
+            if on.is_some() {
+                let carried = kinematics.material_velocity(graph, *on, *contact, frame);
+                v = graph.sub3(v, carried);
+            }
+            let root = |body: BodyId| root_of(mechanism, mechanism.bodies[body].centre);
+            // A motion that carries both bodies does not change their relative velocity.
+            let own = Some(root(*body)).filter(|own| on.is_none_or(|on| root(on) != *own));
+            let rows = ["x", "y", "z"].iter().enumerate().map(|(k, axis)| {
+                let unit = FrameVector::unit(frame, k);
+                Scalar {
+                    name: format!("{}.{axis}", constraint.name),
+                    value: v[k],
+                    along: unit,
+                    direction: kinematics.frames.express(graph, unit, GROUND),
+                    root: own,
+                }
+            });
+            (Place::Point(*contact), rows.collect())
         }
         ConstraintKind::Velocity {
             zero: left, equals, ..
         } => {
-            let left = lowering.lower(&mut algebra.graph, left).map_err(zero)?;
-            let left = told(algebra, mechanism, symbols, kinematics, left)
-                .ok_or_else(|| division_by_zero(item))?;
-            let right = lowering.lower(&mut algebra.graph, equals).map_err(zero)?;
+            let left = setting.lower_in(&mut algebra.graph, item, left)?;
+            let left = defined(told(algebra, symbols, kinematics, left), item)?;
+            let right = setting.lower_in(&mut algebra.graph, item, equals)?;
             let value = algebra.graph.sub(left, right);
             (Place::Constraint(index), vec![single(value)])
         }
@@ -238,31 +234,14 @@ fn scalar_rows(
             equals,
             ..
         } => {
-            let along = lowering
-                .lower_all(&mut algebra.graph, direction)
-                .map_err(zero)?;
-            let right = lowering.lower(&mut algebra.graph, equals).map_err(zero)?;
-            let v = match body {
-                Some(body) => kinematics.material_velocity(
-                    &mut algebra.graph,
-                    mechanism,
-                    *body,
-                    *point,
-                    *frame,
-                ),
-                None => kinematics.frames.express(
-                    &mut algebra.graph,
-                    kinematics.velocity(*point),
-                    *frame,
-                ),
-            };
-            let left = algebra.graph.dot(along, v);
-            let value = algebra.graph.sub(left, right);
-            let along = FrameVector {
-                frame: *frame,
-                v: along,
-            };
-            let direction = kinematics.frames.express(&mut algebra.graph, along, GROUND);
+            let graph = &mut algebra.graph;
+            let along = setting.lower_all_in(graph, item, direction)?;
+            let right = setting.lower_in(graph, item, equals)?;
+            let v = kinematics.material_velocity(graph, *body, *point, *frame);
+            let left = graph.dot(along, v);
+            let value = graph.sub(left, right);
+            let along = FrameVector::new(*frame, along);
+            let direction = kinematics.frames.express(graph, along, GROUND);
             let carrier = body.map_or(*point, |body| mechanism.bodies[body].centre);
             let scalar = Scalar {
                 along,
@@ -273,74 +252,23 @@ fn scalar_rows(
             (Place::Point(*point), vec![scalar])
         }
         ConstraintKind::Position { zero: position, .. } => {
-            let position = lowering.lower(&mut algebra.graph, position).map_err(zero)?;
-            let position = told(algebra, mechanism, symbols, kinematics, position)
-                .ok_or_else(|| division_by_zero(item))?;
-            let along = TimeDerivative {
-                symbols,
-                rates: &symbols.rates,
-            };
-            let value = along.of(algebra, position);
+            let position = setting.lower_in(&mut algebra.graph, item, position)?;
+            let position = defined(told(algebra, symbols, kinematics, position), item)?;
+            let value = setting.rate(algebra, position);
             (Place::Constraint(index), vec![single(value)])
         }
     })
 }
 
-/// A rolling contact.
-#[derive(Clone, Copy)]
-struct Rolling {
-    /// The rolling body.
-    body: BodyId,
-    /// The body on which it rolls; `None` is the ground.
-    on: Option<BodyId>,
-    /// The contact point.
-    point: PointId,
-}
-
-/// The relative velocity at a rolling contact, in the components of a frame.
-fn rolling_rows(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    kinematics: &Kinematics,
-    name: &str,
-    contact: Rolling,
-    frame: FrameId,
-) -> Vec<Scalar> {
-    let Rolling { body, on, point } = contact;
-    let graph = &mut algebra.graph;
-    let mut v = kinematics.material_velocity(graph, mechanism, body, point, frame);
-    if let Some(on) = on {
-        let carried = kinematics.material_velocity(graph, mechanism, on, point, frame);
-        v = graph.sub3(v, carried);
-    }
-    let root = |body: BodyId| root_of(mechanism, mechanism.bodies[body].centre);
-    // A motion that carries both bodies does not change their relative velocity.
-    let own = Some(root(body)).filter(|own| on.is_none_or(|on| root(on) != *own));
-    let rows = ["x", "y", "z"].iter().enumerate().map(|(k, axis)| {
-        let unit = FrameVector {
-            frame,
-            v: vector::IDENTITY[k],
-        };
-        Scalar {
-            name: format!("{name}.{axis}"),
-            value: v[k],
-            along: unit,
-            direction: kinematics.frames.express(graph, unit, GROUND),
-            root: own,
-        }
-    });
-    rows.collect()
-}
-
 /// Splits a row into its coefficients.
 fn row(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     constraint: ConstraintId,
     place: usize,
     scalar: Scalar,
-) -> Result<Row, Finding> {
+) -> Outcome<Row> {
+    let (mechanism, symbols) = (setting.mechanism, setting.symbols);
     let Scalar {
         name,
         value,
@@ -357,9 +285,9 @@ fn row(
         let vanishes = !of_position && algebra.vanishes(coefficient);
         coefficients.push(if vanishes { Graph::ZERO } else { coefficient });
     }
-    let rest = Substitution::by_zero(&algebra.graph, &symbols.rates)
-        .apply(&mut algebra.graph, value)
-        .ok_or_else(|| division_by_zero(Item::Constraint(constraint)))?;
+    let mut at_rest = Substitution::by_zero(&algebra.graph, &symbols.rates);
+    let rest = at_rest.apply(&mut algebra.graph, value);
+    let rest = defined(rest, Item::Constraint(constraint))?;
     let rest = algebra.shortest(rest);
     Ok(Row {
         name,

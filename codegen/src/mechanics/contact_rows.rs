@@ -4,18 +4,17 @@
 //! the contact point vanishes, so does the transport term of its derivative: the rates of the rows are the
 //! components of `v̇_C + d/dt (ω × r)`.
 
-use appell_spec::mechanism::{BodyId, ConstraintKind, FrameId, GROUND, Mechanism, PointId};
+use appell_spec::mechanism::{BodyId, ConstraintKind, FrameId, GROUND, PointId};
 
 use super::algebra::{Algebra, named3};
 use super::constraints::Constraints;
 use super::elimination::{Elimination, TurnedRow};
-use super::finding::{Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Item, Outcome, defined};
 use super::frames::FrameVector;
 use super::gibbs_appell::{BodyMotion, frame_rate};
 use super::kinematics::Kinematics;
-use super::symbols::Symbols;
-use super::time::TimeDerivative;
-use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Substitution};
 
 /// The three rows of a contact.
@@ -30,9 +29,11 @@ pub struct ContactRows {
 
 /// The data that determine the rows of a contact.
 struct Contact<'a> {
-    mechanism: &'a Mechanism,
-    symbols: &'a Symbols,
+    /// With q̇ in terms of the pseudo-velocities and the unknowns of the open system.
+    setting: Setting<'a>,
     elimination: &'a Elimination,
+    /// The pseudo-velocities, then the unknowns of the open system.
+    directions: &'a [Expr],
     kinematics: &'a Kinematics,
     motion: &'a BodyMotion,
     body: BodyId,
@@ -44,8 +45,7 @@ impl ContactRows {
     /// The rows of all contacts none of whose rows has an explicit solution.
     pub fn all(
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        symbols: &Symbols,
+        free: Setting<'_>,
         constraints: &Constraints,
         elimination: &Elimination,
         kinematics: &Kinematics,
@@ -55,6 +55,8 @@ impl ContactRows {
         if elimination.open.by_division {
             return Ok(all);
         }
+        let (mechanism, rates) = (free.mechanism, &elimination.rates);
+        let directions = [free.symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
         for (index, constraint) in mechanism.constraints.entries() {
             let ConstraintKind::Rolling {
                 body,
@@ -80,9 +82,9 @@ impl ContactRows {
                 continue;
             };
             let contact = Contact {
-                mechanism,
-                symbols,
+                setting: Setting { rates, ..free },
                 elimination,
+                directions: &directions,
                 kinematics,
                 motion: &bodies[body.index()],
                 body,
@@ -106,7 +108,7 @@ impl Contact<'_> {
         // In the order of the axes of the ground.
         places.sort_unstable_by_key(|&place| self.elimination.open.rows[place]);
         let nearby = [
-            self.mechanism.points[self.point].frame,
+            self.setting.mechanism.points[self.point].frame,
             self.motion.centre.velocity.frame,
         ];
         let mut best: Option<(usize, FrameId, Vec<Vec3>)> = None;
@@ -120,16 +122,10 @@ impl Contact<'_> {
         let (frame, partial) =
             best.map_or((GROUND, Vec::new()), |(_, frame, partial)| (frame, partial));
         let drift = self.drift(algebra, frame)?;
-        let speeds = &self.symbols.speeds;
+        let speeds = &self.setting.symbols.speeds;
         let rows = (0..3).map(|axis| {
-            let unit = FrameVector {
-                frame,
-                v: vector::IDENTITY[axis],
-            };
-            let factors = self
-                .kinematics
-                .frames
-                .express(&mut algebra.graph, unit, GROUND);
+            let (frames, unit) = (&self.kinematics.frames, FrameVector::unit(frame, axis));
+            let factors = frames.express(&mut algebra.graph, unit, GROUND);
             let mut parts = vec![algebra.graph.neg(drift[axis])];
             for (&speed, direction) in speeds.iter().zip(&partial) {
                 let part = algebra.graph.mul(direction[axis], speed);
@@ -156,20 +152,11 @@ impl Contact<'_> {
     fn partial(&self, algebra: &mut Algebra, frame: FrameId) -> Vec<Vec3> {
         let w = self.angular_velocity(algebra, frame);
         let arm = self.arm(algebra, frame);
-        let directions = [
-            self.symbols.speeds.as_slice(),
-            &self.elimination.open.unknowns,
-        ]
-        .concat();
         let centre = &self.motion.centre;
+        let directions = self.directions.iter().zip(&centre.partial);
         directions
-            .iter()
-            .zip(&centre.partial)
             .map(|(&direction, &v)| {
-                let v = FrameVector {
-                    frame: centre.velocity.frame,
-                    v,
-                };
+                let v = FrameVector::new(centre.velocity.frame, v);
                 let v = self.kinematics.frames.express(&mut algebra.graph, v, frame);
                 let w = w.map(|component| algebra.derivative(component, direction));
                 let w = algebra.shortest3(w);
@@ -181,47 +168,33 @@ impl Contact<'_> {
 
     /// Velocity of the contact at zero speeds.
     fn drift(&self, algebra: &mut Algebra, frame: FrameId) -> Outcome<Vec3> {
-        let v =
-            self.kinematics
-                .frames
-                .express(&mut algebra.graph, self.motion.centre.velocity, frame);
+        let (frames, v) = (&self.kinematics.frames, self.motion.centre.velocity);
+        let v = frames.express(&mut algebra.graph, v, frame);
         let w = self.angular_velocity(algebra, frame);
         let arm = self.arm(algebra, frame);
         let turning = algebra.graph.cross(w, arm);
         let v = algebra.graph.add3(v, turning);
-        let speeds = [
-            self.symbols.speeds.as_slice(),
-            &self.elimination.open.unknowns,
-        ]
-        .concat();
-        let rest = Substitution::by_zero(&algebra.graph, &speeds).apply_all(&mut algebra.graph, &v);
-        match rest.as_deref() {
-            Some(&[x, y, z]) => Ok(algebra.shortest3([x, y, z])),
-            _ => Err(vec![division_by_zero(Item::Body(self.body))]),
-        }
+        let mut at_rest = Substitution::by_zero(&algebra.graph, self.directions);
+        let rest = at_rest.apply_all(&mut algebra.graph, &v);
+        let rest = defined(rest, Item::Body(self.body))?;
+        Ok(algebra.shortest3([rest[0], rest[1], rest[2]]))
     }
 
     /// `-(v̇_C + d/dt (ω × r))` at zero accelerations.
     fn change(&self, algebra: &mut Algebra, frame: FrameId) -> Vec3 {
-        let time = TimeDerivative {
-            symbols: self.symbols,
-            rates: &self.elimination.rates,
-        };
         let centre = &self.motion.centre;
-        let a = FrameVector {
-            frame: centre.velocity.frame,
-            v: centre.bias,
-        };
+        let a = FrameVector::new(centre.velocity.frame, centre.bias);
         let a = self.kinematics.frames.express(&mut algebra.graph, a, frame);
         let w = self.angular_velocity(algebra, frame);
         let arm = self.arm(algebra, frame);
-        let (body, point) = (&self.motion.name, &self.mechanism.points[self.point].name);
-        let w_dot = time.of3(algebra, w);
+        let mechanism = self.setting.mechanism;
+        let (body, point) = (&self.motion.name, &mechanism.points[self.point].name);
+        let w_dot = self.setting.rate3(algebra, w);
         let w_dot = algebra.shortest3(w_dot);
         let w_dot = named3(algebra, &format!("w_dot_{body}"), w_dot);
-        let arm_dot = time.of3(algebra, arm);
+        let arm_dot = self.setting.rate3(algebra, arm);
         let arm_dot = named3(algebra, &format!("arm_dot_{point}"), arm_dot);
-        let frame_rate = frame_rate(algebra, self.mechanism, self.kinematics, frame);
+        let frame_rate = frame_rate(algebra, mechanism, self.kinematics, frame);
         let graph = &mut algebra.graph;
         let turning = graph.cross(w, arm);
         let parts = [
@@ -234,27 +207,17 @@ impl Contact<'_> {
     }
 
     fn angular_velocity(&self, algebra: &mut Algebra, frame: FrameId) -> Vec3 {
-        let w = self
-            .kinematics
-            .frames
-            .angular_velocity_in(&mut algebra.graph, self.frame, frame);
+        let frames = &self.kinematics.frames;
+        let w = frames.angular_velocity_in(&mut algebra.graph, self.frame, frame);
         named3(algebra, &format!("w_{}", self.motion.name), w)
     }
 
     /// From the centre to the contact.
     fn arm(&self, algebra: &mut Algebra, frame: FrameId) -> Vec3 {
-        let centre = self.mechanism.bodies[self.body].centre;
-        let arm = self.kinematics.between(
-            &mut algebra.graph,
-            self.mechanism,
-            centre,
-            self.point,
-            frame,
-        );
-        named3(
-            algebra,
-            &format!("arm_{}", self.mechanism.points[self.point].name),
-            arm,
-        )
+        let mechanism = self.setting.mechanism;
+        let centre = mechanism.bodies[self.body].centre;
+        let (graph, point) = (&mut algebra.graph, &mechanism.points[self.point].name);
+        let arm = self.kinematics.between(graph, centre, self.point, frame);
+        named3(algebra, &format!("arm_{point}"), arm)
     }
 }

@@ -7,11 +7,10 @@ use appell_spec::mechanism::{ConstraintId, ConstraintKind, Mechanism};
 
 use super::algebra::Algebra;
 use super::constraints::Constraints;
-use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Finding, Item, Outcome};
 use super::rank::{LinearRow, Standing, standings};
 use super::row::Row;
-use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};
 
@@ -36,10 +35,10 @@ pub struct Contact {
 /// monitored, by the total reaction: the first with friction.
 pub fn contacts(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     constraints: &Constraints,
 ) -> Outcome<(Vec<Contact>, Vec<Finding>)> {
+    let mechanism = setting.mechanism;
     let (mut contacts, mut warnings) = (Vec::<Contact>::new(), Vec::new());
     for (index, constraint) in mechanism.constraints.entries() {
         let rows: Vec<&Row> = constraints.rows_of(index).collect();
@@ -76,14 +75,10 @@ pub fn contacts(
             }
             continue;
         };
-        let lowering = Lowering {
-            symbols,
-            rates: &symbols.rates,
-        };
+        let item = Item::Constraint(index);
         let friction = friction
-            .map(|friction| lowering.lower(&mut algebra.graph, friction))
-            .transpose()
-            .map_err(|_| vec![division_by_zero(Item::Constraint(index))])?;
+            .map(|friction| setting.lower_in(&mut algebra.graph, item, friction))
+            .transpose()?;
         let contact = Contact {
             constraint: index,
             place,

@@ -1,7 +1,7 @@
 //! Small systems with a nonvanishing determinant but no safe pivot, as for a rotation by angles: solved by
 //! Cramer's rule.
 
-use super::algebra::Algebra;
+use super::algebra::{Algebra, scalar_product};
 use crate::symbolic::{Expr, Graph, Intervals, SymbolId};
 
 /// Size of the largest system solved by its determinant: a rotation in space has three unknowns.
@@ -127,10 +127,8 @@ fn cofactor(algebra: &mut Algebra, rows: &[Vec<Expr>], i: usize, j: usize) -> Ex
     best
 }
 
-/// `Σ a b`
+/// `Σ a b` in its shortest form.
 fn along(algebra: &mut Algebra, a: &[Expr], b: &[Expr]) -> Expr {
-    let parts = a.iter().zip(b).map(|(&a, &b)| algebra.graph.mul(a, b));
-    let parts: Vec<Expr> = parts.collect();
-    let sum = algebra.graph.sum(&parts);
+    let sum = scalar_product(&mut algebra.graph, a, b);
     algebra.shortest(sum)
 }

@@ -23,13 +23,13 @@ use appell_spec::mechanism::{ConstraintId, ConstraintKind, Creep, GROUND, Mechan
 
 use super::Derivation;
 use super::contacts::Contact;
-use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Finding, Item, Outcome};
 use super::gibbs_appell::{GibbsForm, body_motions, gibbs_form};
 use super::kinematics::{Effort, Kinematics};
 use super::loads::{applied_loads, generalized_forces, settle};
-use super::motion;
-use super::time::TimeDerivative;
+use super::motion::{self, Way};
+use super::named_rates;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Rational, Substitution};
 
@@ -44,24 +44,11 @@ struct Creeping<'m> {
     contact: Contact,
 }
 
-/// The motion with its first-order changes due to creep.
-pub struct CreepingMotion {
-    /// M and b.
-    pub gibbs: GibbsForm,
-    /// Π.
-    pub forces: Vec<Expr>,
-    /// q̇.
-    pub coordinate_rates: Vec<Expr>,
-}
-
-/// The motion with creep in all contacts that have it; `None` if there are none.
-pub fn creeping_motion(
-    derivation: &mut Derivation,
-    mechanism: &Mechanism,
-) -> Outcome<Option<CreepingMotion>> {
+/// Applies the first-order changes due to creep in all contacts that have it to q̇, b, Π and ω̇.
+pub fn let_contacts_creep(derivation: &mut Derivation, mechanism: &Mechanism) -> Outcome<()> {
     let creeping = creeping(derivation, mechanism)?;
     if creeping.is_empty() {
-        return Ok(None);
+        return Ok(());
     }
     let slides = sliding(derivation, mechanism, &creeping)?;
     let violated = derivation.velocities.violating.clone();
@@ -74,31 +61,20 @@ pub fn creeping_motion(
         .iter()
         .partition(|rate| slides.iter().any(|(own, _)| own == *rate));
     let mut held = Substitution::by_zero(&algebra.graph, &held);
-    let zero = || vec![division_by_zero(Item::Mechanism)];
-    let rates = held.apply_all(&mut algebra.graph, &violated.coordinate_rates);
-    let rates = rates.ok_or_else(zero)?;
-    let kinematics = Kinematics::new(algebra, mechanism, &symbols, &rates, &[], Effort::Plain)?;
+    let rates = algebra.apply(&mut held, &violated.coordinate_rates)?;
+    let setting = Setting::new(mechanism, &symbols, &rates);
+    let kinematics = Kinematics::new(algebra, setting, &[], Effort::Plain)?;
     let directions = [symbols.speeds.as_slice(), &free].concat();
-    let bodies = body_motions(
-        algebra,
-        mechanism,
-        &symbols,
-        &kinematics,
-        &rates,
-        &directions,
-    )?;
+    let bodies = body_motions(algebra, setting, &kinematics, &directions)?;
     let sliding = gibbs_form(algebra, &bodies, directions.len());
-    let mut loads = applied_loads(algebra, mechanism, &symbols, &kinematics, &rates)?;
+    let mut loads = applied_loads(algebra, setting, &kinematics)?;
     let reactions = &derivation.reactions_in_loads;
     settle(&mut loads, &mut algebra.graph, mechanism, reactions)?;
     let forces = generalized_forces(algebra, &loads, &symbols.speeds);
 
     // m s, and the term of its rate.
     let rolling = derivation.velocities.rates.clone();
-    let time = TimeDerivative {
-        symbols: &symbols,
-        rates: &rolling,
-    };
+    let rolling = Setting::new(mechanism, &symbols, &rolling);
     let mut momenta = Vec::with_capacity(symbols.speeds.len());
     let mut changes = Vec::with_capacity(symbols.speeds.len());
     for row in &sliding.mass_matrix[..symbols.speeds.len()] {
@@ -109,7 +85,7 @@ pub fn creeping_motion(
                 .find(|(own, _)| own == rate)
                 .map_or(Graph::ZERO, |own| own.1);
             momentum.push(algebra.graph.mul(mass, slide));
-            let rate = time.of(algebra, mass);
+            let rate = rolling.rate(algebra, mass);
             change.push(algebra.graph.mul(rate, slide));
         }
         momenta.push(algebra.graph.sum(&momentum));
@@ -119,7 +95,7 @@ pub fn creeping_motion(
     let algebra = &mut derivation.algebra;
     for (change, row) in changes.iter_mut().zip(&derivation.gibbs.mass_matrix) {
         for (&mass, &share) in row.iter().zip(&shares) {
-            let rate = time.of(algebra, mass);
+            let rate = rolling.rate(algebra, mass);
             let part = algebra.graph.mul(rate, share);
             change.push(algebra.graph.neg(part));
         }
@@ -130,24 +106,22 @@ pub fn creeping_motion(
         let left = algebra.graph.sub(speed, share);
         actual.replace(&algebra.graph, speed, left);
     }
+    let bias = algebra.apply(&mut actual, &sliding.bias[..symbols.speeds.len()])?;
+    let mut forces = algebra.apply(&mut actual, &forces)?;
+    let coordinate_rates = algebra.apply(&mut actual, &rates)?;
     let graph = &mut algebra.graph;
-    let mut apply =
-        |graph: &mut Graph, exprs: &[Expr]| actual.apply_all(graph, exprs).ok_or_else(zero);
-    let bias = apply(graph, &sliding.bias[..symbols.speeds.len()])?;
-    let mut forces = apply(graph, &forces)?;
-    let coordinate_rates = apply(graph, &rates)?;
     for (force, change) in forces.iter_mut().zip(changes) {
         let change = graph.sum(&change);
         *force = graph.add(*force, change);
     }
-    Ok(Some(CreepingMotion {
-        gibbs: GibbsForm {
-            bias,
-            ..derivation.gibbs.clone()
-        },
-        forces,
-        coordinate_rates,
-    }))
+    derivation.given.refuse_beside("contacts that creep")?;
+    derivation.gibbs.bias = bias;
+    let (gibbs, way) = (&derivation.gibbs, Way::Shortest);
+    derivation.motion = motion::solve(algebra, mechanism, gibbs, &forces, &[], way)?;
+    derivation.forces = forces;
+    derivation.recursion = None;
+    derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, &coordinate_rates);
+    Ok(())
 }
 
 /// The rate at which each row of a creeping contact is violated: its symbol and its value.
@@ -159,7 +133,7 @@ fn sliding(
     let forces = derivation.reactions(mechanism)?;
     let mut sliding = Vec::new();
     for one in creeping {
-        let slides = one.slides(derivation, forces[one.contact.place])?;
+        let slides = one.slides(derivation, mechanism, forces[one.contact.place])?;
         let rates = &derivation.velocities.violating.rates;
         for (row, &rate) in derivation.constraints.rows.iter().zip(rates) {
             if row.constraint == one.constraint && !row.is_embedded() {
@@ -200,20 +174,19 @@ fn creeping<'m>(derivation: &Derivation, mechanism: &'m Mechanism) -> Outcome<Ve
 
 impl Creeping<'_> {
     /// Creep velocity, in the ground.
-    fn slides(&self, derivation: &mut Derivation, force: Vec3) -> Outcome<Vec3> {
-        let lowering = Lowering {
-            symbols: &derivation.symbols,
-            rates: &derivation.velocities.rates,
-        };
+    fn slides(
+        &self,
+        derivation: &mut Derivation,
+        mechanism: &Mechanism,
+        force: Vec3,
+    ) -> Outcome<Vec3> {
+        let rates = &derivation.velocities.rates;
+        let setting = Setting::new(mechanism, &derivation.symbols, rates);
         let graph = &mut derivation.algebra.graph;
-        let mut lowered = |expr| {
-            let value = lowering.lower(graph, expr);
-            value.map_err(|_| vec![division_by_zero(Item::Constraint(self.constraint))])
-        };
-        let longitudinal = lowered(&self.creep.longitudinal)?;
-        let lateral = lowered(&self.creep.lateral)?;
-        let travel = derivation.kinematics.velocity(self.point);
-        let travel = derivation.kinematics.frames.express(graph, travel, GROUND);
+        let item = Item::Constraint(self.constraint);
+        let longitudinal = setting.lower_in(graph, item, &self.creep.longitudinal)?;
+        let lateral = setting.lower_in(graph, item, &self.creep.lateral)?;
+        let travel = (derivation.kinematics).velocity_in(graph, self.point, GROUND);
         let across = graph.cross(self.contact.normal, travel);
         let square = graph.dot(travel, travel);
         let slow = graph.number(Rational::new(SLOW * SLOW, 1_000_000));

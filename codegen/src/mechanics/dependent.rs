@@ -8,17 +8,16 @@
 
 use appell_spec::mechanism::{CoordinateId, Mechanism};
 
-use super::algebra::Algebra;
+use super::algebra::{Algebra, name_of, replacing, scalar_product};
 use super::constraints::Constraints;
 use super::contact_rows::ContactRows;
 use super::elimination::{Elimination, GeneralizedVelocities, OpenSystem};
-use super::finding::{Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::Outcome;
 use super::gibbs_appell::{BodyMotion, GibbsForm};
 use super::kinematics::Kinematics;
 use super::letters;
 use super::motion::Way;
-use super::symbols::Symbols;
-use super::time::TimeDerivative;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Substitution};
 
@@ -50,22 +49,17 @@ impl DependentSpeeds {
     /// terms of the pseudo-velocities and the dependent speeds.
     pub fn new(
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        symbols: &Symbols,
+        free: Setting<'_>,
         constraints: &Constraints,
         mut elimination: Elimination,
         kinematics: &Kinematics,
         bodies: &[BodyMotion],
     ) -> Outcome<(Self, GeneralizedVelocities)> {
-        let contacts = ContactRows::all(
-            algebra,
-            mechanism,
-            symbols,
-            constraints,
-            &elimination,
-            kinematics,
-            bodies,
-        )?;
+        let Setting {
+            mechanism, symbols, ..
+        } = free;
+        let contacts =
+            ContactRows::all(algebra, free, constraints, &elimination, kinematics, bodies)?;
         for contact in &contacts {
             elimination.turn(algebra, &contact.places, &contact.rows);
         }
@@ -73,30 +67,22 @@ impl DependentSpeeds {
         let rates = elimination.rates.clone();
         let velocities = elimination.closed(algebra, mechanism)?;
         let mut symbols_for = |name: &str| -> Vec<Expr> {
-            let unknowns = system
-                .coordinates
-                .iter()
-                .map(|&q| &mechanism.coordinates[CoordinateId::new(q)].label.name);
+            let unknowns = names(mechanism, &system).into_iter();
             unknowns
                 .map(|q| algebra.graph.symbol(&format!("{q}_{name}")))
                 .collect()
         };
         let (accelerations, multipliers) = (symbols_for("ddot"), symbols_for("multiplier"));
         let mut dependent = Self {
-            driving: Vec::new(),
-            change: Vec::new(),
             values: velocities.solved.clone(),
             partial: vec![Vec::new(); system.unknowns.len()],
-            bias: Vec::new(),
             rates: rates.clone(),
             accelerations,
             multipliers,
             system,
+            ..Self::default()
         };
-        let time = TimeDerivative {
-            symbols,
-            rates: &rates,
-        };
+        let moving = Setting::new(mechanism, symbols, &rates);
         let residual = dependent.residual(&mut algebra.graph);
         for (place, row) in residual.into_iter().enumerate() {
             let right = dependent.system.right[place];
@@ -113,7 +99,7 @@ impl DependentSpeeds {
                     .into_iter()
                     .map(|slope| algebra.shortest(slope))
                     .collect();
-                let change = time.of(algebra, row);
+                let change = moving.rate(algebra, row);
                 algebra.shortest(change)
             };
             dependent.driving.push(driving);
@@ -125,17 +111,7 @@ impl DependentSpeeds {
 
     /// β and γ from the system.
     fn solve(&mut self, algebra: &mut Algebra, mechanism: &Mechanism) -> Outcome<()> {
-        let names: Vec<&str> = self
-            .system
-            .coordinates
-            .iter()
-            .map(|&q| {
-                mechanism.coordinates[CoordinateId::new(q)]
-                    .label
-                    .name
-                    .as_str()
-            })
-            .collect();
+        let names = names(mechanism, &self.system);
         for (i, speed) in mechanism.pseudo_velocities.iter().enumerate() {
             let right: Vec<Expr> = self.driving.iter().map(|row| row[i]).collect();
             let solved = self.system.solved_for(&mut algebra.graph, &right);
@@ -145,7 +121,7 @@ impl DependentSpeeds {
             }
         }
         let mut actual = self.actual(&algebra.graph);
-        let change = apply(&mut actual, algebra, &self.change)?;
+        let change = algebra.apply(&mut actual, &self.change)?;
         let solved = self.system.solved_for(&mut algebra.graph, &change);
         for (name, bias) in names.iter().zip(solved) {
             self.bias
@@ -175,9 +151,7 @@ impl DependentSpeeds {
 
     /// Substitutes the values for the symbols.
     pub fn actual(&self, graph: &Graph) -> Substitution {
-        let unknowns = self.system.unknowns.iter().copied();
-        let parts: Vec<(Expr, Expr)> = unknowns.zip(self.values.iter().copied()).collect();
-        Substitution::of_parts(graph, &parts).keeping_names()
+        replacing(graph, &self.system.unknowns, &self.values).keeping_names()
     }
 
     /// The solution method of the reduced equations.
@@ -209,17 +183,10 @@ impl DependentSpeeds {
 
     /// λ in `Cᵀ λ = work`, named.
     pub fn solved_multipliers(&self, graph: &mut Graph, work: &[Expr]) -> Vec<Expr> {
-        let solved = self.system.transposed_for(graph, work);
-        let names = self.multipliers.clone();
+        let solved = self.system.transposed_for(graph, work).into_iter();
         solved
-            .into_iter()
-            .zip(names)
-            .map(|(value, symbol)| {
-                let name = graph
-                    .as_symbol(symbol)
-                    .map(|s| graph.symbol_name(s).to_owned());
-                graph.name(&name.unwrap_or_default(), value)
-            })
+            .zip(&self.multipliers)
+            .map(|(value, &symbol)| graph.name(&name_of(graph, symbol), value))
             .collect()
     }
 
@@ -249,11 +216,8 @@ impl DependentSpeeds {
         for (row, &bias) in self.partial.iter().zip(&self.bias) {
             let along = scalar_product(graph, row, independent);
             let sum = graph.add(bias, along);
-            let named = self.accelerations[all.len() - independent.len()];
-            let name = graph
-                .as_symbol(named)
-                .map(|s| graph.symbol_name(s).to_owned());
-            all.push(graph.name(&name.unwrap_or_default(), sum));
+            let symbol = self.accelerations[all.len() - independent.len()];
+            all.push(graph.name(&name_of(graph, symbol), sum));
         }
         all
     }
@@ -283,7 +247,7 @@ impl DependentSpeeds {
         }
         let speeds = all.bias.len() - self.values.len();
         let mut actual = self.actual(&algebra.graph);
-        let bias = apply(&mut actual, algebra, &all.bias)?;
+        let bias = algebra.apply(&mut actual, &all.bias)?;
         let graph = &mut algebra.graph;
         let mass = letters::mass(mechanism);
         // M B, the rows of the dependent speeds.
@@ -292,10 +256,7 @@ impl DependentSpeeds {
             .zip(&self.system.unknowns)
             .map(|(row, &unknown)| {
                 let along = self.along_allowed(graph, row);
-                let name = graph
-                    .as_symbol(unknown)
-                    .map(|s| graph.symbol_name(s).to_owned());
-                let name = name.unwrap_or_default();
+                let name = name_of(graph, unknown);
                 let named = along.into_iter().zip(&mechanism.pseudo_velocities);
                 named
                     .map(|(entry, speed)| {
@@ -376,26 +337,14 @@ impl DependentSpeeds {
     }
 }
 
-/// `Σ a b`
-pub fn scalar_product(graph: &mut Graph, a: &[Expr], b: &[Expr]) -> Expr {
-    let products: Vec<Expr> = a.iter().zip(b).map(|(&a, &b)| graph.mul(a, b)).collect();
-    graph.sum(&products)
+/// The names of the coordinates whose rates a system determines.
+fn names<'m>(mechanism: &'m Mechanism, system: &OpenSystem) -> Vec<&'m str> {
+    let coordinates = system.coordinates.iter();
+    let labels = coordinates.map(|&q| &mechanism.coordinates[CoordinateId::new(q)].label);
+    labels.map(|label| label.name.as_str()).collect()
 }
 
-/// Values after a substitution.
-pub fn apply(
-    substitution: &mut Substitution,
-    algebra: &mut Algebra,
-    exprs: &[Expr],
-) -> Outcome<Vec<Expr>> {
-    let applied = substitution.apply_all(&mut algebra.graph, exprs);
-    applied.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
-}
-
-fn apply3(substitution: &mut Substitution, algebra: &mut Algebra, v: Vec3) -> Outcome<Vec3> {
-    let mut actual = v;
-    for component in &mut actual {
-        *component = apply(substitution, algebra, &[*component])?[0];
-    }
-    Ok(actual)
+fn apply3(actual: &mut Substitution, algebra: &mut Algebra, v: Vec3) -> Outcome<Vec3> {
+    let applied = algebra.apply(actual, &v)?;
+    Ok([applied[0], applied[1], applied[2]])
 }

@@ -9,7 +9,6 @@ use appell_spec::expr::Expr as Spec;
 use appell_spec::mechanism::{ConstraintKind, Mechanism};
 
 use super::algebra::Algebra;
-use super::expressions::Lowering;
 use super::finding::{Finding, Item, division_by_zero};
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Node};
@@ -29,11 +28,7 @@ pub fn findings(mechanism: &Mechanism) -> Vec<Finding> {
 }
 
 fn finding(algebra: &mut Algebra, symbols: &Symbols, item: Item, expr: &Spec) -> Option<Finding> {
-    let lowering = Lowering {
-        symbols,
-        rates: &symbols.rates,
-    };
-    let Ok(lowered) = lowering.lower(&mut algebra.graph, expr) else {
+    let Ok(lowered) = symbols.lower(&mut algebra.graph, expr) else {
         return Some(division_by_zero(item));
     };
     let Algebra { graph, test, .. } = algebra;

@@ -3,12 +3,12 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{CoordinateId, Mechanism, SpeedId};
 
-use super::algebra::Algebra;
+use super::algebra::{Algebra, scalar_product};
 use super::constraints::Constraints;
 use super::cramer::{self, Block};
 use super::equation_count::check_count;
-use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Finding, Item, Outcome, listed};
 use super::kinematics::{Effort, Kinematics};
 use super::motions::motions;
 use super::open_system::Equation;
@@ -49,21 +49,21 @@ pub struct Elimination {
     pub rates: Vec<Expr>,
     /// The system of the remaining unknowns in the admissible motions.
     pub open: OpenSystem,
-    /// q̇ and the right-hand side of the open system when constraint rows are violated.
-    violating: (Vec<Expr>, Vec<Expr>),
-    violation_rates: Vec<Expr>,
-    carried_rates: Vec<Expr>,
+    /// The motions that violate constraint rows, likewise.
+    violating: Violation,
+    /// The right-hand side of the open system in these motions.
+    violated_right: Vec<Expr>,
 }
 
 /// Solves for q̇. Pivots must not vanish in the declared ranges; unknowns without such a pivot form a small
 /// system that is solved with pivoting at run time.
 pub fn eliminate(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     constraints: &Constraints,
     intervals: &mut Intervals,
 ) -> Outcome<Elimination> {
+    let (mechanism, symbols) = (setting.mechanism, setting.symbols);
     let violation_rates: Vec<Expr> = constraints
         .rows
         .iter()
@@ -71,18 +71,16 @@ pub fn eliminate(
         .collect();
     let mut carried_rates = Vec::with_capacity(constraints.auxiliary.motions.len());
     for motion in &constraints.auxiliary.motions {
-        let parts = motion.rate.iter().zip(&violation_rates);
-        let parts: Vec<Expr> = parts
-            .map(|(&share, &violation)| algebra.graph.mul(share, violation))
-            .collect();
-        carried_rates.push(algebra.graph.sum(&parts));
+        carried_rates.push(scalar_product(
+            &mut algebra.graph,
+            &motion.rate,
+            &violation_rates,
+        ));
     }
 
     let mut equations = Vec::new();
-    for (index, value) in definitions(algebra, mechanism, symbols)?
-        .into_iter()
-        .enumerate()
-    {
+    let definitions = definitions(algebra, setting)?;
+    for (index, value) in definitions.into_iter().enumerate() {
         equations.push(definition(algebra, symbols, index, value));
     }
     for (index, row) in constraints.rows.iter().enumerate() {
@@ -138,8 +136,7 @@ pub fn eliminate(
     }
     let mut no_violation = Substitution::by_zero(&algebra.graph, &violation_rates);
     let mut allowed = |exprs: &[Expr]| -> Outcome<Vec<Expr>> {
-        let allowed = no_violation.apply_all(&mut algebra.graph, exprs);
-        let allowed = allowed.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+        let allowed = algebra.apply(&mut no_violation, exprs)?;
         Ok(allowed.into_iter().map(|e| algebra.shortest(e)).collect())
     };
     let (rates, right) = (allowed(&violating)?, allowed(&violated.right)?);
@@ -150,9 +147,12 @@ pub fn eliminate(
             right,
             ..violated.clone()
         },
-        violating: (violating, violated.right),
-        violation_rates,
-        carried_rates,
+        violating: Violation {
+            rates: violation_rates,
+            coordinate_rates: violating,
+            carried_rates,
+        },
+        violated_right: violated.right,
     })
 }
 
@@ -160,20 +160,18 @@ impl Elimination {
     /// Recombines equations of the open system: the equation at each of `places` becomes its row of `turned`,
     /// the sum of them all with the factors of that row.
     pub fn turn(&mut self, algebra: &mut Algebra, places: &[usize], turned: &[TurnedRow]) {
-        let before: Vec<Expr> = places
-            .iter()
-            .map(|&place| self.violating.1[place])
-            .collect();
+        let before = places.iter().map(|&place| self.violated_right[place]);
+        let before: Vec<Expr> = before.collect();
         for (&place, row) in places.iter().zip(turned) {
             // The contribution of a violation is linear in it.
             let mut parts = vec![row.right];
             for (&factor, &right) in row.factors.iter().zip(&before) {
-                for &violation in &self.violation_rates {
+                for &violation in &self.violating.rates {
                     let slope = algebra.derivative(right, violation);
                     parts.push(algebra.graph.product(&[factor, slope, violation]));
                 }
             }
-            self.violating.1[place] = algebra.graph.sum(&parts);
+            self.violated_right[place] = algebra.graph.sum(&parts);
             self.open.right[place] = row.right;
             let start = place * self.open.unknowns.len();
             self.open.matrix.splice(
@@ -189,13 +187,7 @@ impl Elimination {
         algebra: &mut Algebra,
         mechanism: &Mechanism,
     ) -> Outcome<GeneralizedVelocities> {
-        let Self {
-            rates,
-            open,
-            violating,
-            violation_rates,
-            carried_rates,
-        } = self;
+        let open = self.open;
         let mut values = open.solved_for(&mut algebra.graph, &open.right);
         let in_quaternion: Vec<usize> = quaternions(mechanism).flatten().collect();
         for (value, &q) in values.iter_mut().zip(&open.coordinates) {
@@ -207,16 +199,15 @@ impl Elimination {
             };
             *value = algebra.graph.name(&name, *value);
         }
-        let rates = open.put_in(algebra, &values, &rates)?;
+        let rates = open.put_in(algebra, &values, &self.rates)?;
         let solved = values;
-        let values = open.solved_for(&mut algebra.graph, &violating.1);
-        let coordinate_rates = open.put_in(algebra, &values, &violating.0)?;
+        let values = open.solved_for(&mut algebra.graph, &self.violated_right);
+        let violating = self.violating;
         Ok(GeneralizedVelocities {
             rates,
             violating: Violation {
-                rates: violation_rates,
-                coordinate_rates,
-                carried_rates,
+                coordinate_rates: open.put_in(algebra, &values, &violating.coordinate_rates)?,
+                ..violating
             },
             solved_numerically: if open.by_division {
                 Vec::new()
@@ -240,17 +231,12 @@ pub struct TurnedRow {
 }
 
 /// The defining expressions of the pseudo-velocities, with symbols for q̇.
-pub fn definitions(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
-) -> Outcome<Vec<Expr>> {
-    let rates = &symbols.rates;
-    let lowering = Lowering { symbols, rates };
-    let speeds = mechanism.pseudo_velocities.entries();
+fn definitions(algebra: &mut Algebra, setting: Setting<'_>) -> Outcome<Vec<Expr>> {
+    let symbols = setting.symbols;
+    let speeds = setting.mechanism.pseudo_velocities.entries();
     let lowered = speeds.map(|(id, speed)| {
-        let value = lowering.lower(&mut algebra.graph, &speed.definition);
-        value.map_err(|_| vec![division_by_zero(Item::PseudoVelocity(id))])
+        let item = Item::PseudoVelocity(id);
+        setting.lower_in(&mut algebra.graph, item, &speed.definition)
     });
     let values = lowered.collect::<Outcome<Vec<Expr>>>()?;
     if !symbols.motions.iter().any(|&(_, named)| {
@@ -262,12 +248,9 @@ pub fn definitions(
     }) {
         return Ok(values);
     }
-    let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain)?;
-    let Some(mut told) = motions(algebra, mechanism, symbols, &kinematics) else {
-        return Ok(values);
-    };
-    told.apply_all(&mut algebra.graph, &values)
-        .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+    let kinematics = Kinematics::new(algebra, setting, &[], Effort::Plain)?;
+    let mut told = motions(algebra, symbols, &kinematics);
+    algebra.apply(&mut told, &values)
 }
 
 /// Converts coefficients of quaternion rates to those of angular velocities, in the columns of the vector
@@ -287,12 +270,7 @@ fn turn_unknowns(
         coefficients[places[0]] = Graph::ZERO;
         for axis in 0..3 {
             let unit = rates_of(&mut algebra.graph, e, vector::IDENTITY[axis]);
-            let parts: Vec<Expr> = of_rates
-                .iter()
-                .zip(unit)
-                .map(|(&a, b)| algebra.graph.mul(a, b))
-                .collect();
-            let sum = algebra.graph.sum(&parts);
+            let sum = scalar_product(&mut algebra.graph, &of_rates, &unit);
             coefficients[places[axis + 1]] = algebra.shortest(sum);
         }
     }
@@ -520,14 +498,10 @@ fn untold_velocities(
     let speeds = mechanism.pseudo_velocities.iter().map(|w| &*w.label.name);
     let names: Vec<&str> = names.iter().copied().chain(speeds).collect();
     let all = [rows, definitions].concat();
-    let untold: Vec<String> = (0..mechanism.coordinates.len())
-        .filter(|&q| all.iter().all(|row| row.coefficients[q] == Graph::ZERO))
-        .map(|q| {
-            format!(
-                "`dot({})`",
-                mechanism.coordinates[CoordinateId::new(q)].label.name
-            )
-        })
+    let coordinates = mechanism.coordinates.entries();
+    let untold: Vec<String> = coordinates
+        .filter(|(q, _)| (all.iter()).all(|row| row.coefficients[q.index()] == Graph::ZERO))
+        .map(|(_, coordinate)| format!("`dot({})`", coordinate.label.name))
         .collect();
     let help = if untold.is_empty() {
         "define it independently of the constraints and of the others".to_owned()
@@ -548,14 +522,13 @@ fn untold_velocities(
         if let Standing::Redundant(sum) = standing
             && let Some(speed) = index.checked_sub(rows.len())
         {
-            let sum: Vec<String> = sum
-                .iter()
-                .map(|&(i, _)| format!("`{}`", names[i]))
-                .collect();
             let reason = if sum.is_empty() {
                 "is always zero".to_owned()
             } else {
-                format!("follows from {}", sum.join(", "))
+                format!(
+                    "follows from {}",
+                    listed(sum.iter().map(|&(i, _)| names[i]))
+                )
             };
             let message = format!("`{}` {reason}: {consequence}", names[index]);
             findings.push(finding(message, Item::PseudoVelocity(SpeedId::new(speed))));

@@ -3,27 +3,19 @@
 //! Quantities that vanish only on the constraint manifold, such as the normal velocity of a contact on a
 //! surface, are recognised by substituting the formula for the coordinate. Only contacts use this.
 
-use appell_spec::mechanism::{ConstraintKind, CoordinateId, Mechanism};
+use appell_spec::mechanism::{ConstraintKind, CoordinateId};
 
 use super::algebra::Algebra;
-use super::expressions::Lowering;
-use super::symbols::Symbols;
+use super::expressions::Setting;
 use crate::symbolic::{Expr, Function, Graph, Substitution};
 
 /// Coordinates with their formulas, at most one for each constraint.
-pub(crate) fn given_coordinates(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
-) -> Vec<(Expr, Expr)> {
+pub(crate) fn given_coordinates(algebra: &mut Algebra, setting: Setting<'_>) -> Vec<(Expr, Expr)> {
+    let (mechanism, symbols) = (setting.mechanism, setting.symbols);
     let mut constraints = mechanism.constraints.iter();
     if !constraints.any(|constraint| matches!(constraint.kind, ConstraintKind::Rolling { .. })) {
         return Vec::new();
     }
-    let lowering = Lowering {
-        symbols,
-        rates: &symbols.rates,
-    };
     let mut given: Vec<(Expr, Expr)> = Vec::new();
     for constraint in &mechanism.constraints {
         let ConstraintKind::Position {
@@ -32,7 +24,7 @@ pub(crate) fn given_coordinates(
         else {
             continue;
         };
-        let Ok(residual) = lowering.lower(&mut algebra.graph, zero) else {
+        let Ok(residual) = setting.lower(&mut algebra.graph, zero) else {
             continue;
         };
         let candidates = match dependent.map(CoordinateId::index) {

@@ -3,7 +3,9 @@
 use appell_spec::expr::{
     BinaryOp, Expr as Spec, ExprKind, Function as SpecFunction, Quantity, Relation as SpecRelation,
 };
+use appell_spec::mechanism::Mechanism;
 
+use super::finding::{Item, Outcome, defined};
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Function, Graph, Rational, Relation};
 
@@ -11,69 +13,40 @@ use crate::symbolic::{Expr, Function, Graph, Rational, Relation};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DivisionByZero;
 
-/// The meaning of the names of spec expressions.
-pub struct Lowering<'a> {
+/// A mechanism in a motion: the meaning of the names in its expressions, and their rates.
+#[derive(Clone, Copy)]
+pub struct Setting<'a> {
+    /// The mechanism.
+    pub mechanism: &'a Mechanism,
     /// Symbols of all quantities except the generalised velocities.
     pub symbols: &'a Symbols,
-    /// Generalised velocities: symbols while unknown, expressions once solved.
+    /// Generalised velocities, one per coordinate: symbols while unknown, expressions once solved.
     pub rates: &'a [Expr],
 }
 
-impl Lowering<'_> {
-    /// The expression in the graph.
-    pub fn lower(&self, graph: &mut Graph, expr: &Spec) -> Result<Expr, DivisionByZero> {
-        Ok(match &expr.kind {
-            ExprKind::Number(value) => graph.number(Rational::from_big(value.clone())),
-            ExprKind::Quantity(quantity) => self.quantity(*quantity),
-            ExprKind::Negate(a) => {
-                let a = self.lower(graph, a)?;
-                graph.neg(a)
-            }
-            ExprKind::Binary(op, a, b) => {
-                let (a, b) = (self.lower(graph, a)?, self.lower(graph, b)?);
-                match op {
-                    BinaryOp::Add => graph.add(a, b),
-                    BinaryOp::Subtract => graph.sub(a, b),
-                    BinaryOp::Multiply => graph.mul(a, b),
-                    BinaryOp::Divide if b == Graph::ZERO => return Err(DivisionByZero),
-                    BinaryOp::Divide => graph.div(a, b),
-                    BinaryOp::Power => {
-                        let negative = graph.as_number(b).is_some_and(Rational::is_negative);
-                        if a == Graph::ZERO && negative {
-                            return Err(DivisionByZero);
-                        }
-                        graph.power(a, b)
-                    }
-                }
-            }
-            ExprKind::Call(function, arguments) => {
-                let mut lowered = Vec::with_capacity(arguments.len());
-                for argument in arguments {
-                    lowered.push(self.lower(graph, argument)?);
-                }
-                call(graph, *function, &lowered)?
-            }
-            ExprKind::Choice {
-                relation,
-                compared,
-                branches,
-            } => {
-                let [left, right] = self.lower_all(graph, compared)?;
-                let branches = self.lower_all(graph, branches)?;
-                let (relation, compared) = match relation {
-                    SpecRelation::Less => (Relation::Less, [left, right]),
-                    SpecRelation::LessOrEqual => (Relation::LessOrEqual, [left, right]),
-                    SpecRelation::Greater => (Relation::Less, [right, left]),
-                    SpecRelation::GreaterOrEqual => (Relation::LessOrEqual, [right, left]),
-                };
-                graph.choice(relation, compared, branches)
-            }
-        })
+impl<'a> Setting<'a> {
+    /// With given generalised velocities.
+    pub fn new(mechanism: &'a Mechanism, symbols: &'a Symbols, rates: &'a [Expr]) -> Self {
+        Self {
+            mechanism,
+            symbols,
+            rates,
+        }
+    }
+
+    /// With symbols for the generalised velocities.
+    pub fn free(mechanism: &'a Mechanism, symbols: &'a Symbols) -> Self {
+        Self::new(mechanism, symbols, &symbols.rates)
+    }
+
+    /// An expression in the graph.
+    pub fn lower(self, graph: &mut Graph, expr: &Spec) -> Result<Expr, DivisionByZero> {
+        lower(self.symbols, self.rates, graph, expr)
     }
 
     /// Several expressions, such as the components of a vector.
     pub fn lower_all<const N: usize>(
-        &self,
+        self,
         graph: &mut Graph,
         exprs: &[Spec; N],
     ) -> Result<[Expr; N], DivisionByZero> {
@@ -84,20 +57,101 @@ impl Lowering<'_> {
         Ok(lowered)
     }
 
-    fn quantity(&self, quantity: Quantity) -> Expr {
-        let s = self.symbols;
-        match quantity {
-            Quantity::Parameter(i) => s.parameters[i.index()],
-            Quantity::Coordinate(i) => s.coordinates[i.index()],
-            Quantity::Rate(i) => self.rates[i.index()],
-            Quantity::PseudoVelocity(i) => s.speeds[i.index()],
-            Quantity::Input(i) => s.inputs[i.index()],
-            Quantity::Signal(i) => s.signals[i.index()][0],
-            // All quantities that a spec names have a symbol.
-            Quantity::Motion(_) | Quantity::Response(_) => s.named(quantity).unwrap_or(Graph::ZERO),
-            Quantity::Time => s.time,
-            Quantity::Pi => s.pi,
+    /// [`Setting::lower`] for an expression of `item`.
+    pub fn lower_in(self, graph: &mut Graph, item: Item, expr: &Spec) -> Outcome<Expr> {
+        defined(self.lower(graph, expr).ok(), item)
+    }
+
+    /// [`Setting::lower_all`] for expressions of `item`.
+    pub fn lower_all_in<const N: usize>(
+        self,
+        graph: &mut Graph,
+        item: Item,
+        exprs: &[Spec; N],
+    ) -> Outcome<[Expr; N]> {
+        defined(self.lower_all(graph, exprs).ok(), item)
+    }
+}
+
+impl Symbols {
+    /// An expression in the graph, with symbols for the generalised velocities.
+    pub fn lower(&self, graph: &mut Graph, expr: &Spec) -> Result<Expr, DivisionByZero> {
+        lower(self, &self.rates, graph, expr)
+    }
+}
+
+fn lower(
+    symbols: &Symbols,
+    rates: &[Expr],
+    graph: &mut Graph,
+    expr: &Spec,
+) -> Result<Expr, DivisionByZero> {
+    let lower = |graph: &mut Graph, expr: &Spec| lower(symbols, rates, graph, expr);
+    Ok(match &expr.kind {
+        ExprKind::Number(value) => graph.number(Rational::from_big(value.clone())),
+        ExprKind::Quantity(quantity) => meaning(symbols, rates, *quantity),
+        ExprKind::Negate(a) => {
+            let a = lower(graph, a)?;
+            graph.neg(a)
         }
+        ExprKind::Binary(op, a, b) => {
+            let (a, b) = (lower(graph, a)?, lower(graph, b)?);
+            match op {
+                BinaryOp::Add => graph.add(a, b),
+                BinaryOp::Subtract => graph.sub(a, b),
+                BinaryOp::Multiply => graph.mul(a, b),
+                BinaryOp::Divide if b == Graph::ZERO => return Err(DivisionByZero),
+                BinaryOp::Divide => graph.div(a, b),
+                BinaryOp::Power => {
+                    let negative = graph.as_number(b).is_some_and(Rational::is_negative);
+                    if a == Graph::ZERO && negative {
+                        return Err(DivisionByZero);
+                    }
+                    graph.power(a, b)
+                }
+            }
+        }
+        ExprKind::Call(function, arguments) => {
+            let mut lowered = Vec::with_capacity(arguments.len());
+            for argument in arguments {
+                lowered.push(lower(graph, argument)?);
+            }
+            call(graph, *function, &lowered)?
+        }
+        ExprKind::Choice {
+            relation,
+            compared,
+            branches,
+        } => {
+            let [left, right] = &**compared;
+            let (left, right) = (lower(graph, left)?, lower(graph, right)?);
+            let [first, second] = &**branches;
+            let branches = [lower(graph, first)?, lower(graph, second)?];
+            let (relation, compared) = match relation {
+                SpecRelation::Less => (Relation::Less, [left, right]),
+                SpecRelation::LessOrEqual => (Relation::LessOrEqual, [left, right]),
+                SpecRelation::Greater => (Relation::Less, [right, left]),
+                SpecRelation::GreaterOrEqual => (Relation::LessOrEqual, [right, left]),
+            };
+            graph.choice(relation, compared, branches)
+        }
+    })
+}
+
+fn meaning(symbols: &Symbols, rates: &[Expr], quantity: Quantity) -> Expr {
+    match quantity {
+        Quantity::Parameter(i) => symbols.parameters[i.index()],
+        Quantity::Coordinate(i) => symbols.coordinates[i.index()],
+        Quantity::Rate(i) => rates[i.index()],
+        Quantity::PseudoVelocity(i) => symbols.speeds[i.index()],
+        Quantity::Input(i) => symbols.inputs[i.index()],
+        Quantity::Signal(i) => symbols.signals[i.index()][0],
+        // All quantities that a spec names have a symbol.
+        Quantity::Motion(_) | Quantity::Response(_) => {
+            symbols.named(quantity).unwrap_or(Graph::ZERO)
+        }
+        Quantity::Time => symbols.time,
+        Quantity::Pi => symbols.pi,
     }
 }
 

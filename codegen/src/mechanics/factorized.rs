@@ -1,15 +1,16 @@
 //! Large blocks of the mass matrix: `Pᵀ M P = L D Lᵀ`, unrolled into named entries.
 
-use appell_spec::mechanism::{Mechanism, SpeedId};
+use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
 use super::finding::Outcome;
 use super::letters;
 use super::motion::{Way, simplest_pivot};
+use super::symbols::speed_name;
 use crate::symbolic::{Expr, Graph};
 
 /// A factorised block.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct FactorizedBlock {
     /// Speeds in the order of elimination.
     pub speeds: Vec<usize>,
@@ -30,12 +31,7 @@ impl FactorizedBlock {
     ) -> Outcome<Self> {
         let [mass, lower, diagonal] =
             [letters::mass, letters::lower, letters::diagonal].map(|letter| letter(mechanism));
-        let name = |speed: usize| {
-            mechanism.pseudo_velocities[SpeedId::new(speed)]
-                .label
-                .name
-                .as_str()
-        };
+        let name = |speed: usize| speed_name(mechanism, speed);
         let mut schur = mass_matrix.to_vec();
         for &i in speeds {
             for &j in speeds.iter().filter(|&&j| j <= i) {
@@ -46,11 +42,7 @@ impl FactorizedBlock {
             }
         }
         let mut open = speeds.to_vec();
-        let mut block = Self {
-            speeds: Vec::new(),
-            lower: Vec::new(),
-            pivots: Vec::new(),
-        };
+        let mut block = Self::default();
         // Columns of L in the order of elimination, indexed by speed.
         let mut columns: Vec<Vec<Expr>> = Vec::new();
         while !open.is_empty() {
@@ -60,30 +52,23 @@ impl FactorizedBlock {
                     simplest_pivot(algebra, mechanism, &schur, &mut open)?
                 }
             };
-            let pivot = algebra
-                .graph
-                .name(&format!("{diagonal}_{}", name(k)), schur[k][k]);
+            let graph = &mut algebra.graph;
+            let pivot = graph.name(&format!("{diagonal}_{}", name(k)), schur[k][k]);
             let mut column = vec![Graph::ZERO; mass_matrix.len()];
             for &i in &open {
-                let ratio = algebra.graph.div(schur[i][k], pivot);
-                column[i] = algebra
-                    .graph
-                    .name(&format!("{lower}_{}_{}", name(i), name(k)), ratio);
+                let ratio = graph.div(schur[i][k], pivot);
+                column[i] = graph.name(&format!("{lower}_{}_{}", name(i), name(k)), ratio);
             }
             for (a, &i) in open.iter().enumerate() {
                 for &j in &open[..=a] {
-                    let change = algebra.graph.mul(column[i], schur[j][k]);
+                    let change = graph.mul(column[i], schur[j][k]);
                     if change == Graph::ZERO {
                         continue;
                     }
-                    let entry = algebra.graph.sub(schur[i][j], change);
-                    let entry = if i == j {
-                        entry
-                    } else {
-                        algebra
-                            .graph
-                            .name(&format!("{diagonal}_{}_{}", name(i), name(j)), entry)
-                    };
+                    let mut entry = graph.sub(schur[i][j], change);
+                    if i != j {
+                        entry = graph.name(&format!("{diagonal}_{}_{}", name(i), name(j)), entry);
+                    }
                     schur[i][j] = entry;
                     schur[j][i] = entry;
                 }

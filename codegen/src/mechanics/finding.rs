@@ -49,6 +49,26 @@ pub struct Finding {
 /// Result of a stage of the derivation.
 pub type Outcome<T> = Result<T, Vec<Finding>>;
 
+/// The value of an expression of `item`; `None` is a division by the number zero.
+pub fn defined<T>(value: Option<T>, item: Item) -> Outcome<T> {
+    value.ok_or_else(|| vec![division_by_zero(item)])
+}
+
+/// Fails if there are findings.
+pub fn unless_any(findings: Vec<Finding>) -> Outcome<()> {
+    if findings.is_empty() {
+        Ok(())
+    } else {
+        Err(findings)
+    }
+}
+
+/// Names in a sentence: `` `a`, `b` ``.
+pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    names.join(", ")
+}
+
 /// A spec expression that divides by the number zero.
 pub fn division_by_zero(item: Item) -> Finding {
     Finding {

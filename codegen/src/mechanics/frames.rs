@@ -1,15 +1,14 @@
 //! Frames: composed rotations, and angular velocities without differentiating matrices.
 
-use appell_spec::mechanism::{FrameId, List, Mechanism};
+use appell_spec::mechanism::{FrameId, List};
 
 use super::algebra::Algebra;
-use super::expressions::Lowering;
-use super::finding::{Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Item, Outcome};
 use super::kinematics::Effort;
 use super::quaternion::Attitude;
 use super::right_angles::sin_cos;
 use super::rotation::{Rotation, Turn};
-use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};
 
@@ -20,6 +19,18 @@ pub struct FrameVector {
     pub frame: FrameId,
     /// Components.
     pub v: Vec3,
+}
+
+impl FrameVector {
+    /// A vector by its components in a frame.
+    pub fn new(frame: FrameId, v: Vec3) -> Self {
+        Self { frame, v }
+    }
+
+    /// A unit vector along an axis of a frame.
+    pub fn unit(frame: FrameId, axis: usize) -> Self {
+        Self::new(frame, vector::IDENTITY[axis])
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -39,21 +50,14 @@ pub struct Frames {
 
 impl Frames {
     /// Frames with their angular velocities: `ω_child = Rᵀ ω_parent + axis · dα/dt` for each turn.
-    pub fn new(
-        algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        lowering: &Lowering<'_>,
-        time: &TimeDerivative<'_>,
-        effort: Effort<'_>,
-    ) -> Outcome<Self> {
+    pub fn new(algebra: &mut Algebra, setting: Setting<'_>, effort: Effort<'_>) -> Outcome<Self> {
         let mut frames: List<FrameId, Frame> = List::default();
-        for (id, frame) in mechanism.frames.entries() {
+        for (id, frame) in setting.mechanism.frames.entries() {
             let mut w = frame.parent.map_or(vector::ZERO, |parent| frames[parent].w);
             let mut rotations = Vec::with_capacity(frame.turns.len());
             for turn in &frame.turns {
-                let mut angle = lowering
-                    .lower(&mut algebra.graph, &turn.angle)
-                    .map_err(|_| vec![division_by_zero(Item::Frame(id))])?;
+                let graph = &mut algebra.graph;
+                let mut angle = setting.lower_in(graph, Item::Frame(id), &turn.angle)?;
                 if turn.negative {
                     angle = algebra.graph.neg(angle);
                 }
@@ -61,13 +65,13 @@ impl Frames {
                 rotations.push(Rotation::Turn(Turn {
                     axis: turn.axis.index(),
                     angle,
-                    rate: time.of(algebra, angle),
+                    rate: setting.rate(algebra, angle),
                     sin,
                     cos,
                 }));
             }
             rotations.extend(frame.quaternion.map(|quaternion| {
-                let [e, e_dot] = [&lowering.symbols.coordinates[..], lowering.rates]
+                let [e, e_dot] = [&setting.symbols.coordinates[..], setting.rates]
                     .map(|all| quaternion.map(|id| all[id.index()]));
                 Rotation::Attitude(Attitude::new(algebra, e, e_dot))
             }));
@@ -92,10 +96,7 @@ impl Frames {
 
     /// Angular velocity of a frame from the ground, in its own components.
     pub fn angular_velocity(&self, frame: FrameId) -> FrameVector {
-        FrameVector {
-            frame,
-            v: self.frames[frame].w,
-        }
+        FrameVector::new(frame, self.frames[frame].w)
     }
 
     /// All angular velocities and rates of turns.
@@ -125,20 +126,14 @@ impl Frames {
 
     /// A vector expressed in another frame.
     pub fn express(&self, graph: &mut Graph, vector: FrameVector, to: FrameId) -> Vec3 {
-        let (up, down) = (self.ancestors(vector.frame), self.ancestors(to));
-        let shared = up
-            .iter()
-            .rev()
-            .zip(down.iter().rev())
-            .take_while(|(a, b)| a == b)
-            .count();
+        let (up, down) = without_shared_end(self.ancestors(vector.frame), self.ancestors(to));
         let mut v = vector.v;
-        for &frame in &up[..up.len() - shared] {
+        for frame in up {
             for rotation in self.frames[frame].rotations.iter().rev() {
                 v = rotation.in_parent(graph, v);
             }
         }
-        for &frame in down[..down.len() - shared].iter().rev() {
+        for frame in down.into_iter().rev() {
             for rotation in &self.frames[frame].rotations {
                 v = rotation.in_child(graph, v);
             }
@@ -153,10 +148,8 @@ impl Frames {
 
     /// The number of frames on the path from one frame to another, excluding the first.
     pub fn distance(&self, from: FrameId, to: FrameId) -> usize {
-        let (up, down) = (self.ancestors(from), self.ancestors(to));
-        let both = up.iter().rev().zip(down.iter().rev());
-        let shared = both.take_while(|(a, b)| a == b).count();
-        up.len() + down.len() - 2 * shared
+        let (up, down) = without_shared_end(self.ancestors(from), self.ancestors(to));
+        up.len() + down.len()
     }
 
     /// The turns from the parent of a frame to it.
@@ -168,4 +161,13 @@ impl Frames {
     pub fn ids(&self) -> impl Iterator<Item = FrameId> + use<> {
         self.frames.ids()
     }
+}
+
+/// Two paths to a root, each without the part that they share.
+pub(super) fn without_shared_end<T: PartialEq>(mut a: Vec<T>, mut b: Vec<T>) -> (Vec<T>, Vec<T>) {
+    let both = a.iter().rev().zip(b.iter().rev());
+    let shared = both.take_while(|(a, b)| a == b).count();
+    a.truncate(a.len() - shared);
+    b.truncate(b.len() - shared);
+    (a, b)
 }

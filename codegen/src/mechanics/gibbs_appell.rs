@@ -4,12 +4,10 @@ use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, PointId};
 
 use super::algebra::{Algebra, named3};
-use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Finding, Item, Outcome, unless_any};
 use super::frames::FrameVector;
 use super::kinematics::Kinematics;
-use super::symbols::Symbols;
-use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};
 use crate::symbolic::{Expr, Graph, Rational, Substitution};
 
@@ -57,49 +55,31 @@ pub struct Rotation {
 /// Motions of all bodies for the speeds `directions`.
 pub fn body_motions(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     kinematics: &Kinematics,
-    rates: &[Expr],
     directions: &[Expr],
 ) -> Outcome<Vec<BodyMotion>> {
-    let lowering = Lowering { symbols, rates };
-    let time = TimeDerivative { symbols, rates };
+    let mechanism = setting.mechanism;
     let mut motions = Vec::with_capacity(mechanism.bodies.len());
     let mut findings = Vec::new();
     for (index, body) in mechanism.bodies.entries() {
         let item = Item::Body(index);
-        let mass = lowering
-            .lower(&mut algebra.graph, &body.mass)
-            .map_err(|_| vec![division_by_zero(item)])?;
+        let mass = setting.lower_in(&mut algebra.graph, item, &body.mass)?;
         let velocity = kinematics.velocity(body.centre);
         let point = body.centre;
-        let centre = translation(
-            algebra, mechanism, directions, kinematics, &time, point, velocity,
-        );
+        let centre = translation(algebra, setting, directions, kinematics, point, velocity);
         let rotation = match (body.frame, &body.inertia) {
             (Some(frame), Some(inertia)) => {
-                let mut matrix = [[Graph::ZERO; 3]; 3];
-                for (target, row) in matrix.iter_mut().zip(&inertia.matrix) {
-                    *target = lowering
-                        .lower_all(&mut algebra.graph, row)
-                        .map_err(|_| vec![division_by_zero(item)])?;
-                }
+                let matrix = setting.inertia(&mut algebra.graph, index)?;
                 if frame != inertia.frame {
                     findings.extend(check_invariance(
                         algebra, mechanism, kinematics, index, &matrix,
                     ));
                 }
-                let w = kinematics.frames.angular_velocity(frame);
-                let v = kinematics
-                    .frames
-                    .express(&mut algebra.graph, w, inertia.frame);
-                let velocity = FrameVector {
-                    frame: inertia.frame,
-                    v: algebra.shortest3(v),
-                };
+                let v = kinematics.turning_in(&mut algebra.graph, index, inertia.frame);
+                let velocity = FrameVector::new(inertia.frame, algebra.shortest3(v));
                 Some(rotation(
-                    algebra, mechanism, directions, kinematics, &time, &body.name, velocity, matrix,
+                    algebra, setting, directions, kinematics, &body.name, velocity, matrix,
                 ))
             }
             _ => None,
@@ -111,27 +91,36 @@ pub fn body_motions(
             rotation,
         });
     }
-    if findings.is_empty() {
-        Ok(motions)
-    } else {
-        Err(findings)
+    unless_any(findings)?;
+    Ok(motions)
+}
+
+impl Setting<'_> {
+    /// Inertia tensor of a body about its centre of mass, in the frame in which it is given; zero for a point mass.
+    pub(super) fn inertia(self, graph: &mut Graph, body: BodyId) -> Outcome<Mat3> {
+        let mut tensor = [vector::ZERO; 3];
+        if let Some(inertia) = &self.mechanism.bodies[body].inertia {
+            for (target, row) in tensor.iter_mut().zip(&inertia.matrix) {
+                *target = self.lower_all_in(graph, Item::Body(body), row)?;
+            }
+        }
+        Ok(tensor)
     }
 }
 
 /// Motion of a point in the frame of its velocity.
 fn translation(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
+    setting: Setting<'_>,
     directions: &[Expr],
     kinematics: &Kinematics,
-    time: &TimeDerivative<'_>,
     point: PointId,
     velocity: FrameVector,
 ) -> Translation {
-    let name = &mechanism.points[point].name;
+    let name = &setting.mechanism.points[point].name;
     let partial = partial_velocities(algebra, velocity.v, directions);
-    let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
-    let componentwise = time.of3(algebra, velocity.v);
+    let w_frame = frame_rate(algebra, setting.mechanism, kinematics, velocity.frame);
+    let componentwise = setting.rate3(algebra, velocity.v);
     let named_velocity = named3(algebra, &format!("v_{name}"), velocity.v);
     let turning = algebra.graph.cross(w_frame, named_velocity);
     let bias = algebra.graph.add3(componentwise, turning);
@@ -157,37 +146,27 @@ fn translation(
 /// expressed in the ground.
 pub fn motions_in_ground(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     kinematics: &Kinematics,
-    rates: &[Expr],
     bodies: &[BodyMotion],
 ) -> Vec<BodyMotion> {
-    let time = TimeDerivative { symbols, rates };
+    let (mechanism, symbols) = (setting.mechanism, setting.symbols);
     let mut motions = bodies.to_vec();
     for (motion, body) in motions.iter_mut().zip(&mechanism.bodies) {
         let moving = motion.centre.velocity;
         if moving.frame == GROUND {
             continue;
         }
-        let v = kinematics
-            .frames
-            .express(&mut algebra.graph, moving, GROUND);
-        let velocity = FrameVector {
-            frame: GROUND,
-            v: algebra.shortest3(v),
-        };
+        let frames = &kinematics.frames;
+        let v = frames.express(&mut algebra.graph, moving, GROUND);
+        let velocity = FrameVector::new(GROUND, algebra.shortest3(v));
         let (speeds, point) = (&symbols.speeds, body.centre);
-        let fixed = translation(
-            algebra, mechanism, speeds, kinematics, &time, point, velocity,
-        );
+        let fixed = translation(algebra, setting, speeds, kinematics, point, velocity);
         let mut acceleration = |centre: &Translation| {
             let graph = &mut algebra.graph;
             let v = along(graph, centre.bias, &centre.partial, &symbols.accelerations);
-            let frame = centre.velocity.frame;
-            let a = kinematics
-                .frames
-                .express(graph, FrameVector { frame, v }, GROUND);
+            let a = FrameVector::new(centre.velocity.frame, v);
+            let a = frames.express(graph, a, GROUND);
             graph.operations(&a)
         };
         if acceleration(&fixed) <= acceleration(&motion.centre) {
@@ -197,23 +176,18 @@ pub fn motions_in_ground(
     motions
 }
 
-#[expect(
-    clippy::too_many_arguments,
-    reason = "everything a rotation depends on, once"
-)]
 fn rotation(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
+    setting: Setting<'_>,
     directions: &[Expr],
     kinematics: &Kinematics,
-    time: &TimeDerivative<'_>,
     body: &str,
     velocity: FrameVector,
     inertia: Mat3,
 ) -> Rotation {
     let partial = partial_velocities(algebra, velocity.v, directions);
-    let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
-    let componentwise = time.of3(algebra, velocity.v);
+    let w_frame = frame_rate(algebra, setting.mechanism, kinematics, velocity.frame);
+    let componentwise = setting.rate3(algebra, velocity.v);
     let componentwise = algebra.shortest3(componentwise);
     // The inertia tensor is constant in its frame, so ḣ = I ω̇ + Ω × h.
     let momentum = algebra.graph.mat_vec(&inertia, velocity.v);
@@ -292,10 +266,7 @@ fn check_invariance(
     // I is invariant if R I = I R; the columns of R are the body's axes.
     let mut axes = [vector::ZERO; 3];
     for (axis, unit) in axes.iter_mut().zip(vector::IDENTITY) {
-        let unit = FrameVector {
-            frame: body_frame,
-            v: unit,
-        };
+        let unit = FrameVector::new(body_frame, unit);
         *axis = kinematics.frames.express(&mut algebra.graph, unit, written);
     }
     let r = vector::transpose(&axes);
@@ -330,6 +301,20 @@ pub struct GibbsForm {
     pub mass_matrix: Vec<Vec<Expr>>,
     /// b.
     pub bias: Vec<Expr>,
+}
+
+/// `M ω̇ + b − Π` of one equation, with a row of M.
+pub(super) fn demand(
+    graph: &mut Graph,
+    mass: &[Expr],
+    accelerations: &[Expr],
+    bias: Expr,
+    force: Expr,
+) -> Expr {
+    let inertial = mass.iter().zip(accelerations);
+    let mut terms: Vec<Expr> = inertial.map(|(&m, &w_dot)| graph.mul(m, w_dot)).collect();
+    terms.extend([bias, graph.neg(force)]);
+    graph.sum(&terms)
 }
 
 impl GibbsForm {

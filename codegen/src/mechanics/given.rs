@@ -5,13 +5,11 @@
 //! drive is the residual of Appell's equation of p, `M ω̇ + b − Π`.
 
 use appell_spec::Code;
-use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
-use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome, division_by_zero};
-use super::gibbs_appell::GibbsForm;
-use super::symbols::Symbols;
+use super::expressions::Setting;
+use super::finding::{Finding, Item, Outcome, unless_any};
+use super::gibbs_appell::{GibbsForm, demand};
 use crate::symbolic::{Expr, Graph};
 
 /// The prescribed rates, and the equations that they replace.
@@ -33,21 +31,15 @@ struct GivenSpeed {
 }
 
 impl Given {
-    /// The prescribed rates of a mechanism; `rates` are q̇.
-    pub fn of(
-        algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        symbols: &Symbols,
-        rates: &[Expr],
-    ) -> Outcome<Self> {
-        let lowering = Lowering { symbols, rates };
+    /// The prescribed rates of a mechanism.
+    pub fn of(algebra: &mut Algebra, setting: Setting<'_>) -> Outcome<Self> {
         let mut speeds = Vec::new();
-        for (id, speed) in mechanism.pseudo_velocities.entries() {
+        for (id, speed) in setting.mechanism.pseudo_velocities.entries() {
             let Some(rate) = &speed.rate else { continue };
-            let rate = lowering.lower(&mut algebra.graph, rate);
+            let item = Item::PseudoVelocity(id);
             speeds.push(GivenSpeed {
                 speed: id.index(),
-                rate: rate.map_err(|_| vec![division_by_zero(Item::PseudoVelocity(id))])?,
+                rate: setting.lower_in(&mut algebra.graph, item, rate)?,
                 mass: Vec::new(),
                 bias: Graph::ZERO,
                 force: Graph::ZERO,
@@ -86,10 +78,8 @@ impl Given {
     /// Required generalised forces of the drives in a motion with these rates.
     pub fn drives(&self, graph: &mut Graph, accelerations: &[Expr]) -> Vec<(usize, Expr)> {
         let drives = self.speeds.iter().map(|given| {
-            let inertial = given.mass.iter().zip(accelerations);
-            let mut terms: Vec<Expr> = inertial.map(|(&m, &w_dot)| graph.mul(m, w_dot)).collect();
-            terms.extend([given.bias, graph.neg(given.force)]);
-            (given.speed, graph.sum(&terms))
+            let force = demand(graph, &given.mass, accelerations, given.bias, given.force);
+            (given.speed, force)
         });
         drives.collect()
     }
@@ -102,11 +92,7 @@ impl Given {
             item: Item::PseudoVelocity(appell_spec::mechanism::SpeedId::new(given.speed)),
             help: "let a load drive it, such as a torque that an input sets".to_owned(),
         });
-        if self.is_empty() {
-            Ok(())
-        } else {
-            Err(findings.collect())
-        }
+        unless_any(findings.collect())
     }
 }
 

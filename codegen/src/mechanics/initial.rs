@@ -2,13 +2,13 @@
 //! at zero, springs of zero length.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{Connection, GROUND, Mechanism, SpeedId};
+use appell_spec::mechanism::{Connection, GROUND, Mechanism, Signal, SpeedId};
 
 use super::algebra::Algebra;
 use super::finding::{Finding, Item};
 use super::kinematics::Kinematics;
 use super::motion::Motion;
-use super::symbols::{Symbols, ids};
+use super::symbols::{Symbols, ids, speed_name};
 use crate::symbolic::{Expr, Graph, SymbolId, evaluate};
 
 /// Values of all symbols at the initial state, without inputs.
@@ -23,33 +23,22 @@ impl InitialState {
     /// From the initial values and the parameters of a spec.
     pub fn new(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Self {
         let mut values = vec![0.0; graph.symbol_count()];
-        let mut set = |symbols: &[Expr], numbers: &mut dyn Iterator<Item = f64>| {
-            for (symbol, number) in ids(graph, symbols).into_iter().zip(numbers) {
+        let parameters = symbols.parameters.iter().copied();
+        let coordinates = symbols.coordinates.iter().copied();
+        let speeds = symbols.speeds.iter().copied();
+        let signals = symbols.signals.iter().map(|orders| orders[0]);
+        let first = |signal: &Signal| signal.values.first().copied().unwrap_or(0.0);
+        let known = parameters
+            .zip(mechanism.parameters.iter().map(|p| p.value))
+            .chain(coordinates.zip(mechanism.coordinates.iter().map(|q| q.initial)))
+            .chain(speeds.zip(mechanism.pseudo_velocities.iter().map(|w| w.initial)))
+            .chain(signals.zip(mechanism.signals.iter().map(first)))
+            .chain([(symbols.pi, std::f64::consts::PI)]);
+        for (symbol, number) in known {
+            if let Some(symbol) = graph.as_symbol(symbol) {
                 values[symbol.0 as usize] = number;
             }
-        };
-        let first = |signal: &appell_spec::mechanism::Signal| signal.values.first().copied();
-        set(
-            &symbols.parameters,
-            &mut mechanism.parameters.iter().map(|p| p.value),
-        );
-        set(
-            &symbols.coordinates,
-            &mut mechanism.coordinates.iter().map(|q| q.initial),
-        );
-        set(
-            &symbols.speeds,
-            &mut mechanism.pseudo_velocities.iter().map(|w| w.initial),
-        );
-        let signals: Vec<Expr> = symbols.signals.iter().map(|orders| orders[0]).collect();
-        set(
-            &signals,
-            &mut mechanism
-                .signals
-                .iter()
-                .map(|signal| first(signal).unwrap_or(0.0)),
-        );
-        set(&[symbols.pi], &mut std::iter::once(std::f64::consts::PI));
+        }
         let ranges = ids(graph, &symbols.coordinates)
             .into_iter()
             .zip(&mechanism.coordinates)
@@ -98,7 +87,7 @@ pub fn vanishing_lengths(
             continue;
         };
         let graph = &mut algebra.graph;
-        let d = kinematics.between(graph, mechanism, a, b, GROUND);
+        let d = kinematics.between(graph, a, b, GROUND);
         let lasting: Vec<Expr> = d.into_iter().filter(|&c| c != Graph::ZERO).collect();
         let vanishes = match *lasting {
             [component] => state.vanishes(graph, component),
@@ -160,7 +149,7 @@ pub fn singularities(
     let (speeds, pivots): (Vec<usize>, Vec<Expr>) = motion.pivots().into_iter().unzip();
     for (speed, value) in speeds.into_iter().zip(state.of(graph, &pivots)) {
         if value == 0.0 || !value.is_finite() {
-            let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
+            let name = speed_name(mechanism, speed);
             findings.push(Finding {
                 code: Code::SingularMassMatrix,
                 message: format!("the mass matrix is singular for `{name}` at the initial state"),

@@ -10,8 +10,9 @@ use appell_spec::mechanism::Mechanism;
 use super::Derivation;
 use super::algebra::Algebra;
 use super::arguments::input_symbols;
-use super::assemble::by_speed;
+use super::assemble::{by_speed, listed};
 use super::finding::Outcome;
+use super::gibbs_appell::demand;
 use super::linear_bound::BoundMotion;
 use super::motion::Motion;
 use crate::program::{Array, Layout, Space};
@@ -39,10 +40,8 @@ impl Derivation {
         let by_inputs = self.changes_of_demand(&demand.entries, &inputs)?;
         let jacobian = |name: &str, about: &str, by: Space, entries: Vec<Expr>| {
             let columns = by.quantities(info);
-            let labels = speeds.iter().flat_map(|row| {
-                let label = move |column: &Quantity| format!("d_{}_d_{}", row.name, column.name);
-                columns.iter().map(label)
-            });
+            let rows = speeds.iter();
+            let labels = rows.flat_map(|row| listed(&format!("d_{}_d", row.name), columns));
             let layout = Layout::Jacobian(Space::GeneralizedForces, by);
             let mut array = Array::new(name, about, layout, entries).labelled(labels);
             for (row, speed) in speeds.iter().enumerate() {
@@ -72,13 +71,8 @@ impl Derivation {
         let graph = &mut self.algebra.graph;
         let (mass, bias) = (&self.gibbs.mass_matrix, &self.gibbs.bias);
         let rows = mass.iter().zip(bias).zip(&self.forces);
-        rows.map(|((row, &bias), &force)| {
-            let inertial = row.iter().zip(accelerations);
-            let mut terms: Vec<Expr> = inertial.map(|(&m, &w_dot)| graph.mul(m, w_dot)).collect();
-            terms.extend([bias, graph.neg(force)]);
-            graph.sum(&terms)
-        })
-        .collect()
+        rows.map(|((row, &bias), &force)| demand(graph, row, accelerations, bias, force))
+            .collect()
     }
 
     /// ∂(M ω̇ + b − Π)/∂z, row by row.

@@ -3,13 +3,11 @@
 use appell_spec::mechanism::{BodyId, FrameId, GROUND, List, Mechanism, ORIGIN, PointId};
 
 use super::algebra::Algebra;
-use super::expressions::Lowering;
-use super::finding::{Item, Outcome, division_by_zero};
-use super::frames::{FrameVector, Frames};
-use super::symbols::Symbols;
-use super::time::TimeDerivative;
+use super::expressions::Setting;
+use super::finding::{Item, Outcome, defined};
+use super::frames::{FrameVector, Frames, without_shared_end};
 use crate::symbolic::vector::{self, Vec3};
-use crate::symbolic::{Expr, Graph, Substitution};
+use crate::symbolic::{Graph, Substitution};
 
 /// Largest distance, in frames, at which other frames are tried for the components of a vector.
 const FARTHEST: usize = 3;
@@ -23,6 +21,10 @@ pub struct Kinematics {
     offsets: List<PointId, FrameVector>,
     /// Velocity of each point from the ground.
     velocities: List<PointId, FrameVector>,
+    /// Reference point of each point; `None` for the origin.
+    references: List<PointId, Option<PointId>>,
+    /// Centre of mass and frame of each body; a point mass has no frame.
+    bodies: List<BodyId, (PointId, Option<FrameId>)>,
 }
 
 /// How far velocities are simplified.
@@ -59,39 +61,33 @@ pub struct Carried {
 }
 
 impl Kinematics {
-    /// Velocities for the generalised velocities `rates`, with auxiliary motions added.
+    /// Velocities in a setting, with auxiliary motions added.
     pub fn new(
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        symbols: &Symbols,
-        rates: &[Expr],
+        setting: Setting<'_>,
         carried: &[Carried],
         effort: Effort<'_>,
     ) -> Outcome<Self> {
-        let lowering = Lowering { symbols, rates };
-        let time = TimeDerivative { symbols, rates };
-        let frames = Frames::new(algebra, mechanism, &lowering, &time, effort)?;
+        let mechanism = setting.mechanism;
+        let frames = Frames::new(algebra, setting, effort)?;
         let mut offsets = List::default();
         for (id, point) in mechanism.points.entries() {
-            let v = lowering
-                .lower_all(&mut algebra.graph, &point.at)
-                .map_err(|_| vec![division_by_zero(Item::Point(id))])?;
-            let frame = point.frame;
-            offsets.push(FrameVector { frame, v });
+            let v = setting.lower_all_in(&mut algebra.graph, Item::Point(id), &point.at)?;
+            offsets.push(FrameVector::new(point.frame, v));
         }
+        let bodies = mechanism.bodies.iter();
         let mut kinematics = Self {
             frames,
             offsets,
             velocities: List::default(),
+            references: mechanism.points.iter().map(|point| point.from).collect(),
+            bodies: bodies.map(|body| (body.centre, body.frame)).collect(),
         };
         for (id, point) in mechanism.points.entries() {
             let velocity = match point.from {
-                None => FrameVector {
-                    frame: GROUND,
-                    v: vector::ZERO,
-                },
+                None => FrameVector::new(GROUND, vector::ZERO),
                 Some(from) => {
-                    let velocity = kinematics.relative_to(algebra, &time, id, from, carried);
+                    let velocity = kinematics.relative_to(algebra, setting, id, from, carried);
                     match effort {
                         Effort::Plain => velocity,
                         Effort::Recursive => FrameVector {
@@ -99,7 +95,7 @@ impl Kinematics {
                             ..velocity
                         },
                         Effort::Shortest(contacts) => {
-                            kinematics.shortest(algebra, mechanism, id, velocity, contacts)
+                            kinematics.shortest(algebra, id, velocity, contacts)
                         }
                     }
                 }
@@ -113,7 +109,7 @@ impl Kinematics {
     fn relative_to(
         &self,
         algebra: &mut Algebra,
-        time: &TimeDerivative<'_>,
+        setting: Setting<'_>,
         point: PointId,
         from: PointId,
         carried: &[Carried],
@@ -125,11 +121,11 @@ impl Kinematics {
             let carried = frames.express(&mut algebra.graph, motion.v, frame);
             v = algebra.graph.add3(v, carried);
         }
-        let relative = time.of3(algebra, at);
+        let relative = setting.rate3(algebra, at);
         let turning = algebra.graph.cross(frames.angular_velocity(frame).v, at);
         v = algebra.graph.add3(v, relative);
         v = algebra.graph.add3(v, turning);
-        FrameVector { frame, v }
+        FrameVector::new(frame, v)
     }
 
     /// The velocity of a point in its shortest form. The centre of a rolling body rotates about the contact,
@@ -137,21 +133,20 @@ impl Kinematics {
     fn shortest(
         &self,
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
         point: PointId,
         differentiated: FrameVector,
         contacts: &[RollingContact],
     ) -> FrameVector {
         let mut best = self.shortest_form(algebra, differentiated);
         for contact in contacts {
-            let body = &mechanism.bodies[contact.body];
-            let Some(frame) = body.frame.filter(|_| body.centre == point) else {
+            let (centre, frame) = self.bodies[contact.body];
+            let Some(frame) = frame.filter(|_| centre == point) else {
                 continue;
             };
             let graph = &mut algebra.graph;
-            let arm = self.between(graph, mechanism, contact.point, point, frame);
+            let arm = self.between(graph, contact.point, point, frame);
             let v = graph.cross(self.frames.angular_velocity(frame).v, arm);
-            let turning = self.shortest_form(algebra, FrameVector { frame, v });
+            let turning = self.shortest_form(algebra, FrameVector::new(frame, v));
             if algebra.graph.operations(&turning.v) < algebra.graph.operations(&best.v) {
                 best = turning;
             }
@@ -171,9 +166,7 @@ impl Kinematics {
             .iter_mut()
             .flat_map(|velocity| &mut velocity.v);
         for component in components.chain(self.frames.rates()) {
-            *component = replacement
-                .apply(graph, *component)
-                .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+            *component = defined(replacement.apply(graph, *component), Item::Mechanism)?;
         }
         Ok(())
     }
@@ -188,56 +181,56 @@ impl Kinematics {
         self.offsets[point]
     }
 
-    /// Velocity of the material point of a body currently at `point`: `v_C + ω × r_CP`.
+    /// Velocity of a point in the components of a frame.
+    pub fn velocity_in(&self, graph: &mut Graph, point: PointId, frame: FrameId) -> Vec3 {
+        self.frames.express(graph, self.velocities[point], frame)
+    }
+
+    /// Angular velocity of a body in the components of a frame; zero for a point mass.
+    pub fn turning_in(&self, graph: &mut Graph, body: BodyId, frame: FrameId) -> Vec3 {
+        let (_, Some(own)) = self.bodies[body] else {
+            return vector::ZERO;
+        };
+        let w = self.frames.angular_velocity(own);
+        self.frames.express(graph, w, frame)
+    }
+
+    /// Velocity of the material point of a body currently at `point`, `v_C + ω × r_CP`, or of the point itself if
+    /// there is no body.
     pub fn material_velocity(
         &self,
         graph: &mut Graph,
-        mechanism: &Mechanism,
-        body: BodyId,
+        body: Option<BodyId>,
         point: PointId,
         frame: FrameId,
     ) -> Vec3 {
-        let body = &mechanism.bodies[body];
-        let centre = self
-            .frames
-            .express(graph, self.velocities[body.centre], frame);
-        let Some(body_frame) = body.frame else {
-            return centre;
+        let Some(body) = body else {
+            return self.velocity_in(graph, point, frame);
         };
-        let w = self
-            .frames
-            .express(graph, self.frames.angular_velocity(body_frame), frame);
-        let arm = self.between(graph, mechanism, body.centre, point, frame);
+        let (centre, own) = self.bodies[body];
+        let v = self.velocity_in(graph, centre, frame);
+        if own.is_none() {
+            return v;
+        }
+        let w = self.turning_in(graph, body, frame);
+        let arm = self.between(graph, centre, point, frame);
         let turning = graph.cross(w, arm);
-        graph.add3(centre, turning)
+        graph.add3(v, turning)
     }
 
     /// Position of `to` from `from`.
-    pub fn between(
-        &self,
-        graph: &mut Graph,
-        mechanism: &Mechanism,
-        from: PointId,
-        to: PointId,
-        frame: FrameId,
-    ) -> Vec3 {
+    pub fn between(&self, graph: &mut Graph, from: PointId, to: PointId, frame: FrameId) -> Vec3 {
         let chain = |point| -> Vec<PointId> {
-            std::iter::successors(Some(point), |&p: &PointId| mechanism.points[p].from).collect()
+            std::iter::successors(Some(point), |&p: &PointId| self.references[p]).collect()
         };
-        let (a, b) = (chain(from), chain(to));
         // Omitting the common part of both paths keeps the vector short.
-        let shared = a
-            .iter()
-            .rev()
-            .zip(b.iter().rev())
-            .take_while(|(p, q)| p == q)
-            .count();
+        let (a, b) = without_shared_end(chain(from), chain(to));
         let mut v = vector::ZERO;
-        for &point in &b[..b.len() - shared] {
+        for point in b {
             let step = self.frames.express(graph, self.offsets[point], frame);
             v = graph.add3(v, step);
         }
-        for &point in &a[..a.len() - shared] {
+        for point in a {
             let step = self.frames.express(graph, self.offsets[point], frame);
             v = graph.sub3(v, step);
         }
@@ -245,8 +238,8 @@ impl Kinematics {
     }
 
     /// Position of a point from the origin, in the ground.
-    pub fn position(&self, graph: &mut Graph, mechanism: &Mechanism, point: PointId) -> Vec3 {
-        self.between(graph, mechanism, ORIGIN, point, GROUND)
+    pub fn position(&self, graph: &mut Graph, point: PointId) -> Vec3 {
+        self.between(graph, ORIGIN, point, GROUND)
     }
 }
 

@@ -2,7 +2,7 @@
 //! accelerations, and solved with the pivots of the motion.
 
 use super::algebra::{Algebra, name_of};
-use super::finding::{Item, Outcome, division_by_zero};
+use super::finding::{Item, Outcome, defined};
 use super::gibbs_appell::GibbsForm;
 use super::motion::{Block, Motion};
 use super::recursion::Recursion;
@@ -79,22 +79,29 @@ impl ImplicitMotion<'_> {
             let mut right = Vec::with_capacity(residual.len());
             for &r in residual {
                 let partial = algebra.derivative(r, variable);
-                let partial = actual
-                    .apply(&mut algebra.graph, partial)
-                    .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
-                right.push(partial);
+                let partial = actual.apply(&mut algebra.graph, partial);
+                right.push(defined(partial, Item::Mechanism)?);
             }
-            let mut column = self.motion.solved_for(algebra, symbols, variable, right);
-            for &rate in self.coordinate_rates {
-                column.push(algebra.derivative(rate, variable));
-            }
-            columns.push(column);
+            columns.push(self.column(algebra, symbols, variable, right));
         }
         Ok(columns)
     }
-}
 
-impl ImplicitMotion<'_> {
+    /// Derivatives of all rates with respect to a variable from those of the residuals.
+    fn column(
+        &self,
+        algebra: &mut Algebra,
+        symbols: &Symbols,
+        variable: Expr,
+        right: Vec<Expr>,
+    ) -> Vec<Expr> {
+        let mut column = self.motion.solved_for(algebra, symbols, variable, right);
+        for &rate in self.coordinate_rates {
+            column.push(algebra.derivative(rate, variable));
+        }
+        column
+    }
+
     /// [`ImplicitMotion::jacobian`] for variables other than parameters, by recursion over the links.
     pub fn jacobian_along(
         &self,
@@ -105,16 +112,11 @@ impl ImplicitMotion<'_> {
     ) -> Vec<Vec<Expr>> {
         let accelerations = &self.motion.accelerations;
         let at = tree.differentiable(algebra, accelerations);
-        let mut columns = Vec::with_capacity(variables.len());
-        for &variable in variables {
+        let columns = variables.iter().map(|&variable| {
             let right = tree.partial(algebra, &at, accelerations, variable);
-            let mut column = self.motion.solved_for(algebra, symbols, variable, right);
-            for &rate in self.coordinate_rates {
-                column.push(algebra.derivative(rate, variable));
-            }
-            columns.push(column);
-        }
-        columns
+            self.column(algebra, symbols, variable, right)
+        });
+        columns.collect()
     }
 }
 

@@ -13,7 +13,7 @@
 
 use super::Unbound;
 use super::algebra::{Algebra, name_of, named3};
-use super::dependent::{DependentSpeeds, apply};
+use super::dependent::DependentSpeeds;
 use super::finding::Outcome;
 use super::gibbs_appell::ActualMotion;
 use super::motion::Motion;
@@ -25,7 +25,15 @@ pub struct BoundMotion<'a> {
     symbols: &'a Symbols,
     motion: &'a Motion,
     dependent: &'a DependentSpeeds,
-    held: Held,
+    // Residuals, with symbols for the fixed quantities.
+    /// `r - C s`
+    velocity: Vec<Expr>,
+    /// `D ω̇ + c - C ṡ`
+    acceleration: Vec<Expr>,
+    /// `ρ + [D, -C]ᵀ λ` of all speeds, the dependent ones last.
+    balance: Vec<Expr>,
+    /// Substitutes the actual motion for the symbols.
+    actual: Substitution,
     /// ∂c/∂s, a column per dependent speed.
     change_by_speeds: Vec<Vec<Expr>>,
     /// Bᵀ ∂ρ/∂s, a column per dependent speed.
@@ -36,30 +44,16 @@ pub struct BoundMotion<'a> {
     rates_by_speeds: Vec<Vec<Expr>>,
 }
 
-/// Residuals, with symbols for the fixed quantities.
-struct Held {
-    /// `r - C s`
-    velocity: Vec<Expr>,
-    /// `D ω̇ + c - C ṡ`
-    acceleration: Vec<Expr>,
-    /// `ρ + [D, -C]ᵀ λ` of all speeds, the dependent ones last.
-    balance: Vec<Expr>,
-    /// Substitutes the actual motion for the symbols.
-    actual: Substitution,
-}
-
-impl Held {
-    /// Derivatives with respect to one symbol at fixed others, at the actual motion.
-    fn partials(
-        actual: &mut Substitution,
-        algebra: &mut Algebra,
-        of: &[Expr],
-        variable: Expr,
-    ) -> Outcome<Vec<Expr>> {
-        let partials = of.iter().map(|&e| algebra.derivative(e, variable));
-        let partials: Vec<Expr> = partials.collect();
-        apply(actual, algebra, &partials)
-    }
+/// Derivatives with respect to one symbol at fixed others, at the actual motion.
+fn partials(
+    actual: &mut Substitution,
+    algebra: &mut Algebra,
+    of: &[Expr],
+    variable: Expr,
+) -> Outcome<Vec<Expr>> {
+    let partials = of.iter().map(|&e| algebra.derivative(e, variable));
+    let partials: Vec<Expr> = partials.collect();
+    algebra.apply(actual, &partials)
 }
 
 impl<'a> BoundMotion<'a> {
@@ -71,34 +65,44 @@ impl<'a> BoundMotion<'a> {
         dependent: &'a DependentSpeeds,
         motion: &'a Motion,
     ) -> Outcome<Self> {
+        let accelerations = [symbols.accelerations.as_slice(), &dependent.accelerations].concat();
+        let residual = residual(algebra, unbound, &accelerations);
+        let graph = &mut algebra.graph;
+        let happening = dependent.accelerations_with(graph, &motion.accelerations);
+        let speeds = dependent.system.unknowns.iter().zip(&dependent.values);
+        let pairs = speeds.chain(accelerations.iter().zip(&happening));
+        let mut pairs: Vec<(Expr, Expr)> = pairs.map(|(&symbol, &value)| (symbol, value)).collect();
+        let mut actual = Substitution::of_parts(graph, &pairs).keeping_names();
+        let work = algebra.apply(&mut actual, &residual[symbols.speeds.len()..])?;
+        let graph = &mut algebra.graph;
+        let multipliers = dependent.solved_multipliers(graph, &work);
+        pairs.extend(dependent.multipliers.iter().copied().zip(multipliers));
         let mut bound = Self {
             symbols,
             motion,
             dependent,
-            held: held(algebra, symbols, unbound, dependent, motion)?,
+            velocity: dependent.residual(graph),
+            acceleration: dependent.acceleration_residual(graph, &accelerations),
+            balance: dependent.balance(graph, &residual),
+            actual: Substitution::of_parts(graph, &pairs).keeping_names(),
             change_by_speeds: Vec::new(),
             balance_by_speeds: Vec::new(),
             balance_by_accelerations: Vec::new(),
             rates_by_speeds: Vec::new(),
         };
-        let Held {
-            acceleration,
-            balance,
-            actual,
-            ..
-        } = &mut bound.held;
+        let actual = &mut bound.actual;
         let speeds = dependent.system.unknowns.iter();
         for (&speed, &rate) in speeds.zip(&dependent.accelerations) {
-            let by_speed = Held::partials(actual, algebra, acceleration, speed)?;
+            let by_speed = partials(actual, algebra, &bound.acceleration, speed)?;
             bound.change_by_speeds.push(by_speed);
             for (columns, variable) in [
                 (&mut bound.balance_by_speeds, speed),
                 (&mut bound.balance_by_accelerations, rate),
             ] {
-                let all = Held::partials(actual, algebra, balance, variable)?;
+                let all = partials(actual, algebra, &bound.balance, variable)?;
                 columns.push(dependent.along_allowed(&mut algebra.graph, &all));
             }
-            let rates = Held::partials(actual, algebra, &dependent.rates, speed)?;
+            let rates = partials(actual, algebra, &dependent.rates, speed)?;
             bound.rates_by_speeds.push(rates);
         }
         Ok(bound)
@@ -110,8 +114,8 @@ impl<'a> BoundMotion<'a> {
         let mut column = self
             .motion
             .solved_for(algebra, self.symbols, variable, right);
-        let (dependent, actual) = (self.dependent, &mut self.held.actual);
-        let mut rates = Held::partials(actual, algebra, &dependent.rates, variable)?;
+        let (dependent, actual) = (self.dependent, &mut self.actual);
+        let mut rates = partials(actual, algebra, &dependent.rates, variable)?;
         add_along(
             &mut algebra.graph,
             &mut rates,
@@ -129,14 +133,9 @@ impl<'a> BoundMotion<'a> {
         variable: Expr,
     ) -> Outcome<[Vec<Expr>; 2]> {
         let (dependent, system) = (self.dependent, &self.dependent.system);
-        let Held {
-            velocity,
-            acceleration,
-            balance,
-            actual,
-        } = &mut self.held;
+        let actual = &mut self.actual;
         let mut partials =
-            |algebra: &mut Algebra, of: &[Expr]| Held::partials(actual, algebra, of, variable);
+            |algebra: &mut Algebra, of: &[Expr]| partials(actual, algebra, of, variable);
         let by = name_of(&algebra.graph, variable);
         let named = |graph: &mut Graph, symbols: &[Expr], values: Vec<Expr>| -> Vec<Expr> {
             let named = symbols.iter().zip(values).map(|(&symbol, value)| {
@@ -150,17 +149,17 @@ impl<'a> BoundMotion<'a> {
         let speeds = if let Some(speed) = speed {
             dependent.partial.iter().map(|row| row[speed]).collect()
         } else {
-            let change = partials(algebra, velocity)?;
+            let change = partials(algebra, &self.velocity)?;
             let solved = system.solved_for(&mut algebra.graph, &change);
             named(&mut algebra.graph, &system.unknowns, solved)
         };
-        let mut change = partials(algebra, acceleration)?;
+        let mut change = partials(algebra, &self.acceleration)?;
         let graph = &mut algebra.graph;
         add_along(graph, &mut change, &self.change_by_speeds, &speeds);
         let solved = system.solved_for(graph, &change);
         let accelerations = named(graph, &dependent.accelerations, solved);
 
-        let all = partials(algebra, balance)?;
+        let all = partials(algebra, &self.balance)?;
         let graph = &mut algebra.graph;
         let mut right = dependent.along_allowed(graph, &all);
         add_along(graph, &mut right, &self.balance_by_speeds, &speeds);
@@ -168,34 +167,6 @@ impl<'a> BoundMotion<'a> {
         add_along(graph, &mut right, by_accelerations, &accelerations);
         Ok([right, speeds])
     }
-}
-
-/// The residuals and the actual motion.
-fn held(
-    algebra: &mut Algebra,
-    symbols: &Symbols,
-    unbound: &Unbound,
-    dependent: &DependentSpeeds,
-    motion: &Motion,
-) -> Outcome<Held> {
-    let accelerations = [symbols.accelerations.as_slice(), &dependent.accelerations].concat();
-    let residual = residual(algebra, unbound, &accelerations);
-    let graph = &mut algebra.graph;
-    let happening = dependent.accelerations_with(graph, &motion.accelerations);
-    let speeds = dependent.system.unknowns.iter().zip(&dependent.values);
-    let pairs = speeds.chain(accelerations.iter().zip(&happening));
-    let mut pairs: Vec<(Expr, Expr)> = pairs.map(|(&symbol, &value)| (symbol, value)).collect();
-    let mut actual = Substitution::of_parts(graph, &pairs).keeping_names();
-    let work = apply(&mut actual, algebra, &residual[symbols.speeds.len()..])?;
-    let graph = &mut algebra.graph;
-    let multipliers = dependent.solved_multipliers(graph, &work);
-    pairs.extend(dependent.multipliers.iter().copied().zip(multipliers));
-    Ok(Held {
-        velocity: dependent.residual(graph),
-        acceleration: dependent.acceleration_residual(graph, &accelerations),
-        balance: dependent.balance(graph, &residual),
-        actual: Substitution::of_parts(graph, &pairs).keeping_names(),
-    })
 }
 
 /// ρ = Π - b - M ω̇ of all speeds, body by body: applied forces minus `v_j · m a + w_j · ḣ`.

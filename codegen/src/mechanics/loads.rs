@@ -2,18 +2,14 @@
 
 use appell_spec::Code;
 use appell_spec::expr::{Expr as Spec, Response};
-use appell_spec::mechanism::{
-    BodyId, Connection, FrameId, GROUND, LoadId, LoadKind, Mechanism, PointId, Spring,
-};
+use appell_spec::mechanism::{Connection, GROUND, LoadId, LoadKind, Mechanism, Spring};
 
 use super::algebra::Algebra;
-use super::expressions::{DivisionByZero, Lowering};
-use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::expressions::{DivisionByZero, Setting};
+use super::finding::{Finding, Item, Outcome, defined, division_by_zero, unless_any};
 use super::frames::FrameVector;
 use super::kinematics::Kinematics;
 use super::motions::motions;
-use super::symbols::Symbols;
-use super::time::TimeDerivative;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational, Substitution, SymbolId};
 
@@ -27,18 +23,11 @@ struct Work {
 }
 
 impl Work {
-    const fn new(force: Expr, velocity: Expr) -> Self {
+    fn new(force: Expr, velocity: Expr, is_conservative: bool) -> Self {
         Self {
             force,
             velocity,
-            is_conservative: false,
-        }
-    }
-
-    const fn conservative(self) -> Self {
-        Self {
-            is_conservative: true,
-            ..self
+            is_conservative,
         }
     }
 }
@@ -123,9 +112,7 @@ fn replace_in(
     let parts = parts.chain(&mut load.potential).chain(of_reactions);
     let parts = parts.chain(load.acts.parts());
     for part in parts {
-        *part = replacement
-            .apply(graph, *part)
-            .ok_or_else(|| vec![division_by_zero(Item::Load(index))])?;
+        *part = defined(replacement.apply(graph, *part), Item::Load(index))?;
     }
     Ok(())
 }
@@ -154,18 +141,16 @@ pub fn generalized_forces(
 /// [`settle`].
 pub fn applied_loads(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     kinematics: &Kinematics,
-    rates: &[Expr],
 ) -> Outcome<Vec<AppliedLoad>> {
+    let mechanism = setting.mechanism;
     let mut loads = Vec::with_capacity(mechanism.loads.len());
     let mut findings = Vec::new();
     for (index, load) in mechanism.loads.entries() {
         let context = Context {
-            mechanism,
+            setting,
             kinematics,
-            lowering: Lowering { symbols, rates },
             load: index,
         };
         match context.load(algebra, &load.kind) {
@@ -173,32 +158,28 @@ pub fn applied_loads(
             Err(DivisionByZero) => findings.push(undefined(index, &load.kind)),
         }
     }
-    if findings.is_empty() {
-        if let Some(mut told) = motions(algebra, mechanism, symbols, kinematics) {
-            replace(&mut loads, &mut algebra.graph, &mut told)?;
-        }
-        name_each_other(algebra, mechanism, symbols, kinematics, &mut loads)?;
-        Ok(loads)
-    } else {
-        Err(findings)
-    }
+    unless_any(findings)?;
+    let mut told = motions(algebra, setting.symbols, kinematics);
+    replace(&mut loads, &mut algebra.graph, &mut told)?;
+    name_each_other(algebra, setting, kinematics, &mut loads)?;
+    Ok(loads)
 }
 
 /// Substitutes forces of loads that other loads refer to.
 fn name_each_other(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     kinematics: &Kinematics,
     loads: &mut [AppliedLoad],
 ) -> Outcome<()> {
+    let symbols = setting.symbols;
     let is_force = |(response, _): &&(Response, Expr)| matches!(response, Response::Force(..));
     if !symbols.responses.iter().any(|named| is_force(&named)) {
         return Ok(());
     }
     let graph = &mut algebra.graph;
-    let mut told = Substitution::of_parts(graph, &[]);
-    for index in mechanism.loads_after_what_they_name() {
+    let mut told = Substitution::default();
+    for index in setting.mechanism.loads_after_what_they_name() {
         replace_in(&mut loads[index.index()], graph, &mut told, index)?;
         let mut own = symbols.responses.clone();
         own.retain(|(response, _)| matches!(response, Response::Force(load, _) if *load == index));
@@ -256,7 +237,7 @@ pub fn settle(
                 [] => Some(Graph::ZERO),
                 _ => known.apply(graph, value),
             };
-            let value = value.ok_or_else(|| vec![division_by_zero(Item::Load(index))])?;
+            let value = defined(value, Item::Load(index))?;
             known.replace(graph, symbol, value);
         }
         replace_in(load, graph, &mut known, index)?;
@@ -280,9 +261,8 @@ fn undefined(index: LoadId, kind: &LoadKind) -> Finding {
 }
 
 struct Context<'a> {
-    mechanism: &'a Mechanism,
+    setting: Setting<'a>,
     kinematics: &'a Kinematics,
-    lowering: Lowering<'a>,
     load: LoadId,
 }
 
@@ -293,8 +273,8 @@ impl Context<'_> {
     fn load(&self, algebra: &mut Algebra, kind: &LoadKind) -> Lowered<AppliedLoad> {
         let mut applied = self.apply(algebra, kind)?;
         for (place, expr) in kind.expressions().into_iter().enumerate() {
-            if let Some(symbol) = self.lowering.symbols.of_reactions(self.load, place) {
-                let value = self.lowering.lower(&mut algebra.graph, expr)?;
+            if let Some(symbol) = self.setting.symbols.of_reactions(self.load, place) {
+                let value = self.setting.lower(&mut algebra.graph, expr)?;
                 applied.of_reactions.push((symbol, value));
             }
         }
@@ -303,8 +283,8 @@ impl Context<'_> {
 
     /// The value of an expression, numbered as in [`LoadKind::expressions`], or its symbol.
     fn part(&self, algebra: &mut Algebra, place: usize, expr: &Spec) -> Lowered<Expr> {
-        let symbol = self.lowering.symbols.of_reactions(self.load, place);
-        symbol.map_or_else(|| self.lowering.lower(&mut algebra.graph, expr), Ok)
+        let symbol = self.setting.symbols.of_reactions(self.load, place);
+        symbol.map_or_else(|| self.setting.lower(&mut algebra.graph, expr), Ok)
     }
 
     fn vector(&self, algebra: &mut Algebra, vector: &[Spec; 3]) -> Lowered<Vec3> {
@@ -325,23 +305,12 @@ impl Context<'_> {
                 frame,
                 vector,
             } => {
-                let force = FrameVector {
-                    frame: *frame,
-                    v: self.vector(algebra, vector)?,
-                };
-                let mut v = match body {
-                    Some(body) => self.kinematics.material_velocity(
-                        &mut algebra.graph,
-                        self.mechanism,
-                        *body,
-                        *on,
-                        *frame,
-                    ),
-                    None => self.point_velocity(algebra, *on, *frame),
-                };
+                let force = FrameVector::new(*frame, self.vector(algebra, vector)?);
+                let graph = &mut algebra.graph;
+                let mut v = (self.kinematics).material_velocity(graph, *body, *on, *frame);
                 if let Some(other) = reaction_on {
-                    let reacting = self.point_velocity(algebra, *other, *frame);
-                    v = algebra.graph.sub3(v, reacting);
+                    let reacting = self.kinematics.velocity_in(graph, *other, *frame);
+                    v = graph.sub3(v, reacting);
                 }
                 Ok(working(algebra, force, v))
             }
@@ -351,14 +320,12 @@ impl Context<'_> {
                 frame,
                 vector,
             } => {
-                let torque = FrameVector {
-                    frame: *frame,
-                    v: self.vector(algebra, vector)?,
-                };
-                let mut w = self.body_rate(algebra, *on, *frame);
+                let torque = FrameVector::new(*frame, self.vector(algebra, vector)?);
+                let graph = &mut algebra.graph;
+                let mut w = self.kinematics.turning_in(graph, *on, *frame);
                 if let Some(other) = reaction_on {
-                    let reacting = self.body_rate(algebra, *other, *frame);
-                    w = algebra.graph.sub3(w, reacting);
+                    let reacting = self.kinematics.turning_in(graph, *other, *frame);
+                    w = graph.sub3(w, reacting);
                 }
                 Ok(working(algebra, torque, w))
             }
@@ -369,9 +336,9 @@ impl Context<'_> {
             } => self.spring_damper(algebra, between, spring.as_ref(), damping.as_ref()),
             LoadKind::Generalized { velocity, force } => {
                 let force = self.part(algebra, 1, force)?;
-                let velocity = self.lowering.lower(&mut algebra.graph, velocity)?;
+                let velocity = self.setting.lower(&mut algebra.graph, velocity)?;
                 Ok(AppliedLoad {
-                    work: vec![Work::new(force, velocity)],
+                    work: vec![Work::new(force, velocity, false)],
                     acts: Acts::Scalar(force),
                     ..AppliedLoad::default()
                 })
@@ -381,26 +348,18 @@ impl Context<'_> {
 
     /// The weight of every body; its potential is relative to the origin of the ground.
     fn gravity(&self, algebra: &mut Algebra, down: [i8; 3], g: &Spec) -> Lowered<AppliedLoad> {
-        let g = self.lowering.lower(&mut algebra.graph, g)?;
+        let g = self.setting.lower(&mut algebra.graph, g)?;
         let down = down.map(|c| algebra.graph.integer(c.into()));
         let (mut work, mut heights) = (Vec::new(), Vec::new());
-        for body in &self.mechanism.bodies {
-            let mass = self.lowering.lower(&mut algebra.graph, &body.mass)?;
+        for body in &self.setting.mechanism.bodies {
+            let mass = self.setting.lower(&mut algebra.graph, &body.mass)?;
             let weight = algebra.graph.mul(mass, g);
             let v = self.kinematics.velocity(body.centre);
-            let direction = self.kinematics.frames.express(
-                &mut algebra.graph,
-                FrameVector {
-                    frame: GROUND,
-                    v: down,
-                },
-                v.frame,
-            );
+            let (frames, down_here) = (&self.kinematics.frames, FrameVector::new(GROUND, down));
+            let direction = frames.express(&mut algebra.graph, down_here, v.frame);
             let force = algebra.graph.scale3(weight, direction);
-            work.extend(pairs(force, v.v).into_iter().map(Work::conservative));
-            let position =
-                self.kinematics
-                    .position(&mut algebra.graph, self.mechanism, body.centre);
+            work.extend(pairs(force, v.v, true));
+            let position = (self.kinematics).position(&mut algebra.graph, body.centre);
             let fallen = algebra.graph.dot(down, position);
             let energy = algebra.graph.mul(weight, fallen);
             heights.push(algebra.graph.neg(energy));
@@ -424,13 +383,12 @@ impl Context<'_> {
         let (length, rate) = self.extension(algebra, between)?;
         let (mut tensions, mut work, mut potential) = (Vec::new(), Vec::new(), None);
         if let Some(Spring { stiffness, relaxed }) = spring {
-            let k = self.lowering.lower(&mut algebra.graph, stiffness)?;
-            let relaxed = self.lowering.lower(&mut algebra.graph, relaxed)?;
+            let k = self.setting.lower(&mut algebra.graph, stiffness)?;
+            let relaxed = self.setting.lower(&mut algebra.graph, relaxed)?;
             let extension = algebra.graph.sub(length, relaxed);
             let tension = algebra.graph.mul(k, extension);
             tensions.push(tension);
-            let elastic = resisting(algebra, tension, &rate);
-            work.extend(elastic.into_iter().map(Work::conservative));
+            work.extend(resisting(algebra, tension, &rate, true));
             let square = algebra.graph.square(extension);
             let twice = algebra.graph.mul(k, square);
             potential = Some(algebra.graph.scale(&Rational::new(1, 2), twice));
@@ -442,7 +400,7 @@ impl Context<'_> {
             let speed = power(&mut algebra.graph, rate.iter());
             let tension = algebra.graph.mul(c, speed);
             tensions.push(tension);
-            work.extend(resisting(algebra, tension, &rate));
+            work.extend(resisting(algebra, tension, &rate, false));
         }
         Ok(AppliedLoad {
             work,
@@ -456,53 +414,30 @@ impl Context<'_> {
     fn extension(&self, algebra: &mut Algebra, between: &Connection) -> Lowered<(Expr, Vec<Work>)> {
         match between {
             Connection::Along(displacement) => {
-                let displacement = self.lowering.lower(&mut algebra.graph, displacement)?;
-                let Lowering { symbols, rates } = self.lowering;
-                let rate = TimeDerivative { symbols, rates }.of(algebra, displacement);
-                let unit = Work::new(Graph::ONE, rate);
-                Ok((displacement, vec![unit]))
+                let displacement = self.setting.lower(&mut algebra.graph, displacement)?;
+                let rate = self.setting.rate(algebra, displacement);
+                Ok((displacement, vec![Work::new(Graph::ONE, rate, false)]))
             }
             &Connection::Points(a, b) => {
                 let graph = &mut algebra.graph;
-                let d = self.kinematics.between(graph, self.mechanism, a, b, GROUND);
-                let d = self.kinematics.frames.simplest(
-                    algebra,
-                    FrameVector {
-                        frame: GROUND,
-                        v: d,
-                    },
-                );
+                let d = self.kinematics.between(graph, a, b, GROUND);
+                let d = FrameVector::new(GROUND, d);
+                let d = self.kinematics.frames.simplest(algebra, d);
                 let square = algebra.graph.dot(d.v, d.v);
                 let square = algebra.shortest(square);
                 if square == Graph::ZERO {
                     return Err(DivisionByZero);
                 }
                 let length = algebra.graph.sqrt(square);
-                let (v_a, v_b) = (
-                    self.point_velocity(algebra, a, d.frame),
-                    self.point_velocity(algebra, b, d.frame),
-                );
-                let v = algebra.graph.sub3(v_b, v_a);
-                let inverse = algebra.graph.pow(length, -1);
-                let direction = algebra.graph.scale3(inverse, d.v);
-                Ok((length, pairs(direction, v)))
+                let graph = &mut algebra.graph;
+                let ends = [a, b];
+                let [v_a, v_b] = ends.map(|end| self.kinematics.velocity_in(graph, end, d.frame));
+                let v = graph.sub3(v_b, v_a);
+                let inverse = graph.pow(length, -1);
+                let direction = graph.scale3(inverse, d.v);
+                Ok((length, pairs(direction, v, false)))
             }
         }
-    }
-
-    fn point_velocity(&self, algebra: &mut Algebra, point: PointId, frame: FrameId) -> Vec3 {
-        self.kinematics
-            .frames
-            .express(&mut algebra.graph, self.kinematics.velocity(point), frame)
-    }
-
-    fn body_rate(&self, algebra: &mut Algebra, body: BodyId, frame: FrameId) -> Vec3 {
-        // A torque on a point mass is rejected when the spec is checked.
-        let Some(body_frame) = self.mechanism.bodies[body].frame else {
-            return [Graph::ZERO; 3];
-        };
-        let w = self.kinematics.frames.angular_velocity(body_frame);
-        self.kinematics.frames.express(&mut algebra.graph, w, frame)
     }
 }
 
@@ -511,17 +446,15 @@ fn power<'a>(graph: &mut Graph, work: impl Iterator<Item = &'a Work>) -> Expr {
     graph.sum(&parts)
 }
 
-fn pairs(force: Vec3, velocity: Vec3) -> Vec<Work> {
-    force
-        .into_iter()
-        .zip(velocity)
-        .map(|(force, velocity)| Work::new(force, velocity))
+fn pairs(force: Vec3, velocity: Vec3, is_conservative: bool) -> Vec<Work> {
+    let both = force.into_iter().zip(velocity);
+    both.map(|(force, velocity)| Work::new(force, velocity, is_conservative))
         .collect()
 }
 
 /// The load of a force or a torque, with a velocity in the components of the same frame.
 fn working(algebra: &mut Algebra, force: FrameVector, velocity: Vec3) -> AppliedLoad {
-    let mut work = pairs(force.v, velocity);
+    let mut work = pairs(force.v, velocity, false);
     work.retain(|w| w.force != Graph::ZERO);
     for w in &mut work {
         w.velocity = algebra.shortest(w.velocity);
@@ -534,10 +467,16 @@ fn working(algebra: &mut Algebra, force: FrameVector, velocity: Vec3) -> Applied
 }
 
 /// A tension works against the growth of the length.
-fn resisting(algebra: &mut Algebra, tension: Expr, extension: &[Work]) -> Vec<Work> {
-    let pull = algebra.graph.neg(tension);
-    extension
-        .iter()
-        .map(|w| Work::new(algebra.graph.mul(pull, w.force), w.velocity))
+fn resisting(
+    algebra: &mut Algebra,
+    tension: Expr,
+    extension: &[Work],
+    is_conservative: bool,
+) -> Vec<Work> {
+    let graph = &mut algebra.graph;
+    let pull = graph.neg(tension);
+    let along = extension.iter();
+    along
+        .map(|w| Work::new(graph.mul(pull, w.force), w.velocity, is_conservative))
         .collect()
 }

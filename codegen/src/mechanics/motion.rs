@@ -7,9 +7,10 @@ use appell_spec::mechanism::{Mechanism, SpeedId};
 
 use super::algebra::Algebra;
 use super::factorized::FactorizedBlock;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, unless_any};
 use super::gibbs_appell::GibbsForm;
 use super::letters;
+use super::symbols::speed_name;
 use crate::symbolic::{Expr, Graph, Node, Rational};
 
 /// Blocks up to this size are eliminated symbolically, each in its shortest form; larger ones, and those with
@@ -73,13 +74,10 @@ pub fn solve(
     parts: &[(Expr, Expr)],
     way: Way<'_>,
 ) -> Outcome<Motion> {
-    let names: Vec<&str> = mechanism
-        .pseudo_velocities
-        .iter()
-        .map(|w| w.label.name.as_str())
-        .collect();
     let forward = letters::forward(mechanism);
-    let dots: Vec<String> = names.iter().map(|name| format!("{name}_dot")).collect();
+    let name_dot = |graph: &mut Graph, speed: usize, value: Expr| {
+        graph.name(&format!("{}_dot", speed_name(mechanism, speed)), value)
+    };
     let right: Vec<Expr> = forces
         .iter()
         .zip(&gibbs.bias)
@@ -111,23 +109,21 @@ pub fn solve(
         match &block {
             Block::Eliminated(equations) => {
                 for equation in equations {
-                    let value = equation.solved(algebra, &accelerations);
-                    accelerations[equation.speed] =
-                        algebra.graph.name(&dots[equation.speed], value);
+                    let (speed, value) = (equation.speed, equation.solved(algebra, &accelerations));
+                    accelerations[speed] = name_dot(&mut algebra.graph, speed, value);
                 }
             }
             Block::Factorized(block) => {
-                let right: Vec<Expr> = names
-                    .iter()
-                    .zip(&right)
-                    .map(|(name, &right)| algebra.graph.name(&format!("rhs_{name}"), right))
+                let right = right.iter().enumerate();
+                let right: Vec<Expr> = right
+                    .map(|(speed, &right)| named(algebra, mechanism, "rhs", speed, right))
                     .collect();
                 block.solve(algebra, &right, &mut accelerations, |graph, speed, z| {
-                    graph.name(&format!("{forward}_{}", names[speed]), z)
+                    graph.name(&format!("{forward}_{}", speed_name(mechanism, speed)), z)
                 });
                 for speed in speeds {
-                    let value = accelerations[speed];
-                    accelerations[speed] = algebra.graph.name(&dots[speed], value);
+                    accelerations[speed] =
+                        name_dot(&mut algebra.graph, speed, accelerations[speed]);
                 }
             }
         }
@@ -138,10 +134,10 @@ pub fn solve(
         accelerations,
     };
     // The pivots of a factorisation along the tree have not been tested yet.
-    let singular = motion.pivots().into_iter().find(|&(_, pivot)| {
-        let value = algebra.graph.named_value(pivot).unwrap_or(pivot);
-        value == Graph::ZERO
-    });
+    let singular = motion
+        .pivots()
+        .into_iter()
+        .find(|&(_, pivot)| algebra.graph.named_value(pivot).unwrap_or(pivot) == Graph::ZERO);
     match singular {
         Some((speed, _)) => Err(vec![without_own_mass(mechanism, speed)]),
         None => Ok(motion),
@@ -286,14 +282,14 @@ fn eliminate(
     let mut equations = Vec::with_capacity(speeds.len());
     while !open.is_empty() {
         let k = simplest_pivot(algebra, mechanism, &schur, &mut open)?;
-        let pivot = name_pivot(algebra, mechanism, k, schur[k][k]);
+        let pivot = named(algebra, mechanism, "pivot", k, schur[k][k]);
         let mut couplings = Vec::with_capacity(open.len());
         for &i in &open {
             // The quotient may cancel; otherwise the pivot's name is shorter.
             let cancelled = algebra.graph.div(schur[i][k], schur[k][k]);
             let cancelled = algebra.shortest(cancelled);
-            let named = algebra.graph.div(schur[i][k], pivot);
-            couplings.push((i, algebra.graph.shorter(named, cancelled)));
+            let whole = algebra.graph.div(schur[i][k], pivot);
+            couplings.push((i, algebra.graph.shorter(whole, cancelled)));
         }
         for (a, &(i, ratio)) in couplings.iter().enumerate() {
             for &(j, _) in &couplings[..=a] {
@@ -311,7 +307,7 @@ fn eliminate(
         let (right, inertia) = (right[k], pivot);
         let specific = specific(algebra, mechanism, k, right, pivot);
         let pivot = specific.map_or(pivot, |_| Graph::ONE);
-        let right = specific.unwrap_or_else(|| name_right(algebra, mechanism, k, right));
+        let right = specific.unwrap_or_else(|| named(algebra, mechanism, "rhs", k, right));
         equations.push(Eliminated {
             speed: k,
             pivot,
@@ -326,20 +322,16 @@ fn eliminate(
     Ok(equations)
 }
 
-fn name_pivot(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, pivot: Expr) -> Expr {
-    let name = format!(
-        "pivot_{}",
-        mechanism.pseudo_velocities[SpeedId::new(speed)].label.name
-    );
-    algebra.graph.name(&name, pivot)
-}
-
-fn name_right(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, right: Expr) -> Expr {
-    let name = format!(
-        "rhs_{}",
-        mechanism.pseudo_velocities[SpeedId::new(speed)].label.name
-    );
-    algebra.graph.name(&name, right)
+/// A quantity of the equation of a pseudo-velocity, named `what_speed`.
+fn named(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    what: &str,
+    speed: usize,
+    value: Expr,
+) -> Expr {
+    let name = format!("{what}_{}", speed_name(mechanism, speed));
+    algebra.graph.name(&name, value)
 }
 
 /// The right-hand side divided term by term by a pivot that is a symbol, if that is shorter: a mass to which
@@ -367,7 +359,7 @@ fn specific(
     if algebra.graph.operations(&[specific]) >= algebra.graph.operations(&[whole]) {
         return None;
     }
-    let speed = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
+    let speed = speed_name(mechanism, speed);
     let name = format!("rhs_{speed}_over_{}", algebra.graph.symbol_name(symbol));
     Some(algebra.graph.name(&name, specific))
 }
@@ -396,19 +388,13 @@ fn massless(
     mechanism: &Mechanism,
     mass_matrix: &[Vec<Expr>],
 ) -> Outcome<()> {
-    let findings: Vec<Finding> = (0..mass_matrix.len())
-        .filter(|&k| algebra.test.is_zero(&algebra.graph, mass_matrix[k][k]))
-        .map(|k| without_mass(mechanism, k))
-        .collect();
-    if findings.is_empty() {
-        Ok(())
-    } else {
-        Err(findings)
-    }
+    let moved = |k: &usize| algebra.test.is_zero(&algebra.graph, mass_matrix[*k][*k]);
+    let findings = (0..mass_matrix.len()).filter(moved);
+    unless_any(findings.map(|k| without_mass(mechanism, k)).collect())
 }
 
 fn without_mass(mechanism: &Mechanism, speed: usize) -> Finding {
-    let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
+    let name = speed_name(mechanism, speed);
     Finding {
         code: Code::SingularMassMatrix,
         message: format!("`{name}` moves no mass"),
@@ -418,7 +404,7 @@ fn without_mass(mechanism: &Mechanism, speed: usize) -> Finding {
 }
 
 fn without_own_mass(mechanism: &Mechanism, speed: usize) -> Finding {
-    let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
+    let name = speed_name(mechanism, speed);
     Finding {
         message: format!(
             "the mass matrix is singular: `{name}` moves no mass otherwise than the others do"
@@ -471,15 +457,12 @@ fn quotients(
         let scaled = algebra.graph.scale(&number.recip(), pivot);
         scales.push((pivot, number));
         let (right, pivot) = (
-            name_right(algebra, mechanism, speed, right),
-            name_pivot(algebra, mechanism, speed, scaled),
+            named(algebra, mechanism, "rhs", speed, right),
+            named(algebra, mechanism, "pivot", speed, scaled),
         );
         let mut quotient = algebra.graph.div(right, pivot);
         if whole != Graph::ZERO {
-            let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
-            quotient = algebra
-                .graph
-                .name(&format!("rhs_over_pivot_{name}"), quotient);
+            quotient = named(algebra, mechanism, "rhs_over_pivot", speed, quotient);
         }
         equations.push(Eliminated {
             speed,

@@ -1,10 +1,10 @@
 //! The generalised velocities without an explicit formula: a system that is solved with pivoting, or quotients
 //! that remain symbols for display.
 
-use super::algebra::Algebra;
-use super::finding::{Item, Outcome, division_by_zero};
+use super::algebra::{Algebra, replacing};
+use super::finding::Outcome;
 use super::symbols::ids;
-use crate::symbolic::{Expr, Graph, Substitution};
+use crate::symbolic::{Expr, Graph};
 
 /// An equation `Σ coefficient · q̇ = right`.
 pub struct Equation {
@@ -98,14 +98,7 @@ impl OpenSystem {
         values: &[Expr],
         exprs: &[Expr],
     ) -> Outcome<Vec<Expr>> {
-        let parts: Vec<(Expr, Expr)> = self
-            .unknowns
-            .iter()
-            .copied()
-            .zip(values.iter().copied())
-            .collect();
-        let mut actual = Substitution::of_parts(&algebra.graph, &parts);
-        let put_in = actual.apply_all(&mut algebra.graph, exprs);
-        put_in.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+        let mut actual = replacing(&algebra.graph, &self.unknowns, values);
+        algebra.apply(&mut actual, exprs)
     }
 }

@@ -4,13 +4,14 @@
 use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
-use super::expressions::Lowering;
-use super::finding::{Item, Outcome, division_by_zero};
+use super::algebra::replacing;
+use super::expressions::Setting;
+use super::finding::{Item, Outcome, defined};
 use super::motions::motions;
-use super::responses::{Answering, named_in};
+use super::responses::named_in;
 use super::symbols::ids;
 use crate::program::{Array, Layout, Space};
-use crate::symbolic::{Expr, Graph, Substitution};
+use crate::symbolic::{Expr, Substitution};
 
 /// Values of the outputs.
 pub(super) struct Outputs {
@@ -45,37 +46,24 @@ impl Derivation {
 
     /// Values of the outputs, with and without symbols for ω̇.
     pub(super) fn output_values(&mut self, mechanism: &Mechanism) -> Outcome<Outputs> {
-        let lowering = Lowering {
-            symbols: &self.symbols,
-            rates: &self.coordinate_rates,
-        };
-        let mut told = motions(
-            &mut self.algebra,
-            mechanism,
-            &self.symbols,
-            &self.kinematics,
-        );
+        let setting = Setting::new(mechanism, &self.symbols, &self.coordinate_rates);
+        let mut told = motions(&mut self.algebra, &self.symbols, &self.kinematics);
         let mut implicit = Vec::with_capacity(mechanism.outputs.len());
         for (index, output) in mechanism.outputs.entries() {
             let graph = &mut self.algebra.graph;
-            let value = lowering.lower(graph, &output.value).ok();
-            let value = value.and_then(|value| match &mut told {
-                Some(told) => told.apply(graph, value),
-                None => Some(value),
-            });
-            implicit.push(value.ok_or_else(|| vec![division_by_zero(Item::Output(index))])?);
+            let item = Item::Output(index);
+            let value = setting.lower_in(graph, item, &output.value)?;
+            implicit.push(defined(told.apply(graph, value), item)?);
         }
         if self.responses_in_outputs.is_empty() {
             let values = implicit.clone();
             return Ok(Outputs { implicit, values });
         }
-        let graph = &mut self.algebra.graph;
-        let zero = || vec![division_by_zero(Item::Mechanism)];
-        let mut told = Substitution::of_parts(graph, &self.responses_in_outputs);
-        let implicit = told.apply_all(graph, &implicit).ok_or_else(zero)?;
+        let algebra = &mut self.algebra;
+        let mut told = Substitution::of_parts(&algebra.graph, &self.responses_in_outputs);
+        let implicit = algebra.apply(&mut told, &implicit)?;
         let mut actual = self.actual_accelerations().keeping_names();
-        let graph = &mut self.algebra.graph;
-        let values = actual.apply_all(graph, &implicit).ok_or_else(zero)?;
+        let values = self.algebra.apply(&mut actual, &implicit)?;
         Ok(Outputs { implicit, values })
     }
 
@@ -86,31 +74,15 @@ impl Derivation {
         if wanted.is_empty() {
             return Ok(Vec::new());
         }
-        let bodies = self.bodies_in_ground(mechanism);
-        let answering = Answering {
-            mechanism,
-            symbols: &self.symbols,
-            constraints: &self.constraints,
-            contacts: &self.contacts,
-            violation: &self.velocities.violating,
-            kinematics: &self.kinematics,
-            rates: &self.coordinate_rates,
-            creeps: self.coordinate_rates != self.rolling_rates,
-            bodies: &bodies,
-            accelerations: &self.symbols.accelerations,
-            loads: &self.loads,
-            reactions_in_loads: &self.reactions_in_loads,
-            given: &self.given,
-        };
-        answering.values(&mut self.algebra, &wanted)
+        let accelerations = self.symbols.accelerations.clone();
+        let in_loads = self.reactions_in_loads.clone();
+        self.answers(mechanism, &wanted, &accelerations, &in_loads)
     }
 
     /// Substitutes ω̇ for its symbols.
     fn actual_accelerations(&mut self) -> Substitution {
-        let symbols = self.symbols.accelerations.iter();
-        let values = self.motion.accelerations.iter();
-        let pairs: Vec<(Expr, Expr)> = symbols.copied().zip(values.copied()).collect();
-        Substitution::of_parts(&self.algebra.graph, &pairs)
+        let symbols = &self.symbols.accelerations;
+        replacing(&self.algebra.graph, symbols, &self.motion.accelerations)
     }
 
     /// Derivatives of the outputs with respect to each list of variables, row by row:
@@ -128,15 +100,11 @@ impl Derivation {
         let along = self.slopes(&outputs.implicit, &accelerations);
         // Unnamed, since these derivatives contain symbols of ω̇, which are not displayed.
         let mut actual = self.actual_accelerations();
-        let mut at_the_motion = |graph: &mut Graph, partials: &[Expr]| {
-            let values = actual.apply_all(graph, partials);
-            values.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
-        };
-        let along = at_the_motion(&mut self.algebra.graph, &along)?;
+        let along = self.algebra.apply(&mut actual, &along)?;
         let rates = self.derivatives(variables)?;
         for ((slopes, rates), variables) in slopes.iter_mut().zip(&rates).zip(variables) {
+            *slopes = self.algebra.apply(&mut actual, slopes)?;
             let graph = &mut self.algebra.graph;
-            *slopes = at_the_motion(graph, slopes)?;
             for (place, slope) in slopes.iter_mut().enumerate() {
                 let (row, column) = (place / variables.len(), place % variables.len());
                 let mut parts = vec![*slope];

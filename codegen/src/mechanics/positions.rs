@@ -4,12 +4,12 @@ use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, Mechanism};
 
 use super::algebra::Algebra;
-use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Finding, Item, Outcome, defined, listed, unless_any};
 use super::kinematics::Kinematics;
 use super::motions::told;
 use super::rank::{LinearRow, Standing, is_finite, standings};
-use super::symbols::Symbols;
+use super::redundancy::omission;
 use crate::symbolic::{Expr, Graph, Intervals};
 
 /// The position constraints `f(q, t) = 0` of a mechanism.
@@ -33,15 +33,11 @@ impl Positions {
     /// The constraints with their derivatives.
     pub fn new(
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        symbols: &Symbols,
+        setting: Setting<'_>,
         kinematics: &Kinematics,
         intervals: &mut Intervals,
     ) -> Outcome<Self> {
-        let lowering = Lowering {
-            symbols,
-            rates: &symbols.rates,
-        };
+        let (mechanism, symbols) = (setting.mechanism, setting.symbols);
         let (mut positions, mut findings) = (Self::default(), Vec::new());
         for (index, constraint) in mechanism.constraints.entries() {
             let ConstraintKind::Position {
@@ -50,28 +46,22 @@ impl Positions {
             else {
                 continue;
             };
-            let residual = lowering
-                .lower(&mut algebra.graph, zero)
-                .ok()
-                .and_then(|zero| told(algebra, mechanism, symbols, kinematics, zero))
-                .ok_or_else(|| vec![division_by_zero(Item::Constraint(index))])?;
+            let item = Item::Constraint(index);
+            let residual = setting.lower_in(&mut algebra.graph, item, zero)?;
+            let residual = defined(told(algebra, symbols, kinematics, residual), item)?;
             let row: Vec<Expr> = symbols
                 .coordinates
                 .iter()
                 .map(|&q| algebra.derivative(residual, q))
                 .collect();
             if let Some(others) = positions.repeated(algebra, intervals, residual, &row) {
-                positions
-                    .warnings
-                    .push(redundant(&constraint.name, index, &others));
+                let reason = format!("follows from {}", listed(others));
+                let warning = omission(&constraint.name, index, &reason);
+                positions.warnings.push(warning);
                 continue;
             }
-            match positions.dependent_of(
-                algebra,
-                intervals,
-                &row,
-                dependent.map(CoordinateId::index),
-            ) {
+            let named = dependent.map(CoordinateId::index);
+            match positions.dependent_of(algebra, intervals, &row, named) {
                 Some(coordinate) => positions.dependent.push(coordinate),
                 None => findings.push(undetermined(mechanism, index, *dependent)),
             }
@@ -80,11 +70,8 @@ impl Positions {
             positions.residual.push(residual);
             positions.jacobian.push(row);
         }
-        if findings.is_empty() {
-            Ok(positions)
-        } else {
-            Err(findings)
-        }
+        unless_any(findings)?;
+        Ok(positions)
     }
 
     /// The names of the constraints of which this one, with its Jacobian row, is a linear combination in every
@@ -95,7 +82,7 @@ impl Positions {
         intervals: &mut Intervals,
         residual: Expr,
         slopes: &[Expr],
-    ) -> Option<Vec<String>> {
+    ) -> Option<Vec<&str>> {
         let row = |(coefficients, &rest): (&[Expr], &Expr)| LinearRow {
             coefficients: coefficients.to_vec(),
             rest,
@@ -111,11 +98,8 @@ impl Positions {
         if sum.is_empty() || !sum.iter().all(finite) {
             return None;
         }
-        Some(
-            sum.iter()
-                .map(|&(place, _)| self.names[place].clone())
-                .collect(),
-        )
+        let names = sum.iter().map(|&(place, _)| self.names[place].as_str());
+        Some(names.collect())
     }
 
     /// The coordinate named in the spec, or the free one with the safest coefficient.
@@ -136,19 +120,6 @@ impl Positions {
         let candidates: Vec<usize> = (0..row.len()).filter(free).collect();
         let safe = |&&q: &&usize| intervals.cannot_vanish(&algebra.graph, row[q]);
         candidates.iter().find(safe).or(candidates.first()).copied()
-    }
-}
-
-fn redundant(name: &str, index: ConstraintId, others: &[String]) -> Finding {
-    let others: Vec<String> = others.iter().map(|other| format!("`{other}`")).collect();
-    Finding {
-        code: Code::RedundantConstraint,
-        message: format!(
-            "`{name}` follows from {} and is left out: the motion is the same without it",
-            others.join(", ")
-        ),
-        item: Item::Constraint(index),
-        help: "remove it".to_owned(),
     }
 }
 

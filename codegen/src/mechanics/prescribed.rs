@@ -6,8 +6,8 @@
 
 use super::Derivation;
 use super::algebra::Algebra;
-use super::finding::{Item, Outcome, division_by_zero};
-use super::gibbs_appell::{ActualMotion, BodyMotion};
+use super::finding::{Item, Outcome, defined};
+use super::gibbs_appell::ActualMotion;
 use super::loads::AppliedLoad;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Substitution};
@@ -15,15 +15,35 @@ use crate::symbolic::{Expr, Graph, Substitution};
 impl Derivation {
     /// The power of prescribed motions, with these pseudo-accelerations.
     pub fn prescribed_power(&mut self, accelerations: &[Expr]) -> Outcome<Expr> {
-        let (bodies, speeds) = (&self.bodies, &self.symbols.speeds);
-        let mut sum = power(
-            &mut self.algebra,
-            bodies,
-            &self.loads,
-            speeds,
-            accelerations,
-        )?;
-        let graph = &mut self.algebra.graph;
+        let (algebra, speeds) = (&mut self.algebra, &self.symbols.speeds);
+        let mut standing = Substitution::by_zero(&algebra.graph, speeds);
+        let mut parts = Vec::new();
+        for body in &self.bodies {
+            let v_0 = prescribed3(algebra, &mut standing, body.centre.velocity.v)?;
+            let w_0 = match &body.rotation {
+                Some(rotation) => prescribed3(algebra, &mut standing, rotation.velocity.v)?,
+                None => None,
+            };
+            if v_0.is_none() && w_0.is_none() {
+                continue;
+            }
+            let motion = ActualMotion::new(algebra, body, accelerations);
+            if let Some(v_0) = v_0 {
+                let force = algebra.graph.scale3(body.mass, motion.a);
+                parts.push(algebra.graph.dot(force, v_0));
+            }
+            if let Some(w_0) = w_0 {
+                parts.push(algebra.graph.dot(motion.momentum_rate, w_0));
+            }
+        }
+        for (force, velocity) in self.loads.iter().flat_map(AppliedLoad::work) {
+            if let Some(v_0) = prescribed(algebra, &mut standing, velocity)? {
+                let supplied = algebra.graph.mul(force, v_0);
+                parts.push(algebra.graph.neg(supplied));
+            }
+        }
+        let graph = &mut algebra.graph;
+        let mut sum = graph.sum(&parts);
         for (speed, drive) in self.given.drives(graph, accelerations) {
             let supplied = graph.mul(drive, speeds[speed]);
             sum = graph.add(sum, supplied);
@@ -32,51 +52,16 @@ impl Derivation {
     }
 }
 
-/// The power of constraints and frames, for the pseudo-velocities `speeds` and their rates `accelerations`.
-fn power(
-    algebra: &mut Algebra,
-    bodies: &[BodyMotion],
-    loads: &[AppliedLoad],
-    speeds: &[Expr],
-    accelerations: &[Expr],
-) -> Outcome<Expr> {
-    let mut standing = Substitution::by_zero(&algebra.graph, speeds);
-    let mut parts = Vec::new();
-    for body in bodies {
-        let v_0 = prescribed3(algebra, &mut standing, body.centre.velocity.v)?;
-        let w_0 = match &body.rotation {
-            Some(rotation) => prescribed3(algebra, &mut standing, rotation.velocity.v)?,
-            None => None,
-        };
-        if v_0.is_none() && w_0.is_none() {
-            continue;
-        }
-        let motion = ActualMotion::new(algebra, body, accelerations);
-        if let Some(v_0) = v_0 {
-            let force = algebra.graph.scale3(body.mass, motion.a);
-            parts.push(algebra.graph.dot(force, v_0));
-        }
-        if let Some(w_0) = w_0 {
-            parts.push(algebra.graph.dot(motion.momentum_rate, w_0));
-        }
-    }
-    for (force, velocity) in loads.iter().flat_map(AppliedLoad::work) {
-        if let Some(v_0) = prescribed(algebra, &mut standing, velocity)? {
-            let supplied = algebra.graph.mul(force, v_0);
-            parts.push(algebra.graph.neg(supplied));
-        }
-    }
-    Ok(algebra.graph.sum(&parts))
-}
-
 /// The velocity at zero pseudo-velocities; `None` if it vanishes.
 fn prescribed(
     algebra: &mut Algebra,
     standing: &mut Substitution,
     velocity: Expr,
 ) -> Outcome<Option<Expr>> {
-    let v_0 = standing.apply(&mut algebra.graph, velocity);
-    let v_0 = v_0.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+    let v_0 = defined(
+        standing.apply(&mut algebra.graph, velocity),
+        Item::Mechanism,
+    )?;
     let is_zero = algebra.test.is_zero(&algebra.graph, v_0);
     Ok((!is_zero).then_some(v_0))
 }

@@ -13,14 +13,13 @@ use appell_spec::expr::Response;
 use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
-use super::algebra::Algebra;
+use super::algebra::{Algebra, replacing, scalar_product};
 use super::creep::per_mass;
-use super::dependent;
 use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::named_parts;
 use super::loads::{self, AppliedLoad, generalized_forces, settle};
 use super::motion;
-use super::responses::{Answering, named_in};
+use super::responses::named_in;
 use super::symbols::ids;
 use crate::symbolic::{Expr, Graph, Substitution};
 
@@ -64,7 +63,7 @@ impl Derivation {
         let unbound = generalized_forces(algebra, loads, &directions);
         let mut actual = dependent.actual(&algebra.graph);
         loads::replace(loads, &mut algebra.graph, &mut actual)?;
-        let forces = dependent::apply(&mut actual, algebra, &unbound)?;
+        let forces = algebra.apply(&mut actual, &unbound)?;
         let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
         self.given.put_into_forces(&mut forces);
         Ok((unbound, forces))
@@ -119,7 +118,7 @@ impl Derivation {
         let answers = self.answers(mechanism, wanted, &unknown, &held)?;
         // The loads with these symbols only.
         let mut absent = Substitution::by_zero(&self.algebra.graph, &symbols);
-        let rest = dependent::apply(&mut absent, &mut self.algebra, forces)?;
+        let rest = self.algebra.apply(&mut absent, forces)?;
         let graph = &mut self.algebra.graph;
         let push = forces.iter().zip(&rest);
         let push: Vec<Expr> = push.map(|(&all, &rest)| graph.sub(all, rest)).collect();
@@ -139,33 +138,6 @@ impl Derivation {
             }
         }
         Ok(response)
-    }
-
-    /// Reactions for given accelerations.
-    fn answers(
-        &mut self,
-        mechanism: &Mechanism,
-        wanted: &[(Response, Expr)],
-        accelerations: &[Expr],
-        reactions_in_loads: &[(Expr, Expr)],
-    ) -> Outcome<Vec<(Expr, Expr)>> {
-        let bodies = self.bodies_in_ground(mechanism);
-        let answering = Answering {
-            mechanism,
-            symbols: &self.symbols,
-            constraints: &self.constraints,
-            contacts: &self.contacts,
-            violation: &self.velocities.violating,
-            kinematics: &self.kinematics,
-            rates: &self.coordinate_rates,
-            creeps: false,
-            bodies: &bodies,
-            accelerations,
-            loads: &self.loads,
-            reactions_in_loads,
-            given: &self.given,
-        };
-        answering.values(&mut self.algebra, wanted)
     }
 }
 
@@ -199,7 +171,7 @@ impl FixedPoint {
         if open.is_empty() {
             return Ok(values);
         }
-        let mut known = Substitution::of_parts(graph, &[]);
+        let mut known = Substitution::default();
         for (i, &unknown) in self.unknowns.iter().enumerate() {
             if !open.contains(&i) {
                 known.replace(graph, unknown, values[i]);
@@ -207,7 +179,7 @@ impl FixedPoint {
         }
         let mut forces = Vec::with_capacity(self.loads.len());
         for &(symbol, value) in &self.loads {
-            let value = dependent::apply(&mut known, algebra, &[value])?[0];
+            let value = algebra.apply(&mut known, &[value])?[0];
             known.replace(&algebra.graph, symbol, value);
             forces.push(value);
         }
@@ -215,7 +187,7 @@ impl FixedPoint {
         let mut residual = Vec::with_capacity(open.len());
         for &i in &open {
             let graph = &mut algebra.graph;
-            let change = dependent::scalar_product(graph, &self.response[i], &forces);
+            let change = scalar_product(graph, &self.response[i], &forces);
             let less = graph.sub(values[i], self.unknowns[i]);
             residual.push(graph.add(less, change));
         }
@@ -234,10 +206,9 @@ impl FixedPoint {
         };
         let mut at: Vec<Expr> = start;
         for step in 1..=steps {
-            let here: Vec<(Expr, Expr)> = unknowns.iter().copied().zip(at.clone()).collect();
-            let mut here = Substitution::of_parts(&algebra.graph, &here);
-            let right = dependent::apply(&mut here, algebra, &residual)?;
-            let matrix = dependent::apply(&mut here, algebra, &slopes)?;
+            let mut here = replacing(&algebra.graph, &unknowns, &at);
+            let right = algebra.apply(&mut here, &residual)?;
+            let matrix = algebra.apply(&mut here, &slopes)?;
             let changes = quotient(algebra, matrix, right)?;
             for ((at, change), &i) in at.iter_mut().zip(changes).zip(&open) {
                 let graph = &mut algebra.graph;
@@ -269,7 +240,7 @@ fn is_linear(algebra: &mut Algebra, residual: &[Expr], matrix: &[Expr], unknowns
         let Some(constant) = none.apply(&mut algebra.graph, residual) else {
             return false;
         };
-        let along = dependent::scalar_product(&mut algebra.graph, row, unknowns);
+        let along = scalar_product(&mut algebra.graph, row, unknowns);
         let rest = algebra.graph.sub(constant, along);
         algebra.test.are_equal(&algebra.graph, residual, rest)
     })

@@ -3,29 +3,22 @@
 //! Every constraint row has a speed that violates only this row. In the motion along it the constraint does
 //! work, so Appell's equation for it gives the reaction.
 
-use appell_spec::mechanism::Mechanism;
-
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::elimination::Violation;
-use super::finding::{Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::Outcome;
 use super::gibbs_appell::{ActualMotion, BodyMotion, partial_velocities};
 use super::kinematics::{Carried, Effort, Kinematics};
 use super::loads::{applied_loads, generalized_forces, settle};
-use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Substitution};
 
 /// Reaction at every place of [`Constraints::reactions`], in the ground. `in_loads` are the reactions on which
 /// loads depend; loads with other reactions are omitted.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "everything a reaction depends on, once"
-)]
 pub fn reactions(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     constraints: &Constraints,
     violation: &Violation,
     bodies: &[BodyMotion],
@@ -37,18 +30,18 @@ pub fn reactions(
         .zip(&violation.carried_rates)
         .flat_map(|(motion, &rate)| motion.at(&mut algebra.graph, rate))
         .collect();
-    let rates = &violation.coordinate_rates;
-    let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &carried, Effort::Plain)?;
-    let mut loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
+    let mechanism = setting.mechanism;
+    let violated = Setting {
+        rates: &violation.coordinate_rates,
+        ..setting
+    };
+    let kinematics = Kinematics::new(algebra, violated, &carried, Effort::Plain)?;
+    let mut loads = applied_loads(algebra, violated, &kinematics)?;
     settle(&mut loads, &mut algebra.graph, mechanism, in_loads)?;
     let applied = generalized_forces(algebra, &loads, &violation.rates);
     // Violations are virtual: a damper resists the actual motion only.
     let mut allowed = Substitution::by_zero(&algebra.graph, &violation.rates);
-    let applied = applied
-        .into_iter()
-        .map(|force| allowed.apply(&mut algebra.graph, force))
-        .collect::<Option<Vec<Expr>>>()
-        .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+    let applied = algebra.apply(&mut allowed, &applied)?;
 
     // Inertial forces and moments, shared by all reactions.
     let mut inertial = Vec::with_capacity(bodies.len());
@@ -64,21 +57,15 @@ pub fn reactions(
             continue;
         };
         let mut parts = vec![algebra.graph.neg(applied)];
-        for ((body, motion), (force, moment)) in mechanism.bodies.iter().zip(bodies).zip(&inertial)
-        {
+        let moving = mechanism.bodies.entries().zip(bodies);
+        for (((id, body), motion), (force, moment)) in moving.zip(&inertial) {
             let frame = motion.centre.velocity.frame;
-            let v = kinematics.frames.express(
-                &mut algebra.graph,
-                kinematics.velocity(body.centre),
-                frame,
-            );
+            let v = kinematics.velocity_in(&mut algebra.graph, body.centre, frame);
             let partial = partial_velocities(algebra, v, &[rate])[0];
             parts.push(algebra.graph.dot(*force, partial));
-            if let (Some(body_frame), Some(rotation)) = (body.frame, &motion.rotation) {
-                let w = kinematics.frames.angular_velocity(body_frame);
-                let w = kinematics
-                    .frames
-                    .express(&mut algebra.graph, w, rotation.velocity.frame);
+            if let Some(rotation) = &motion.rotation {
+                let frame = rotation.velocity.frame;
+                let w = kinematics.turning_in(&mut algebra.graph, id, frame);
                 let partial = partial_velocities(algebra, w, &[rate])[0];
                 parts.push(algebra.graph.dot(*moment, partial));
             }

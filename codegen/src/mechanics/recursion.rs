@@ -18,22 +18,20 @@ use appell_spec::expr::{Expr as SpecExpr, Quantity};
 use appell_spec::mechanism::{Load, LoadKind, Mechanism};
 
 use super::algebra::{Algebra, named3};
-use super::expressions::Lowering;
-use super::finding::{Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Item, Outcome};
 use super::frames::FrameVector;
 use super::gibbs_appell::{BodyMotion, GibbsForm, Rotation, Translation};
 use super::kinematics::{Effort, Kinematics};
 use super::loads::{AppliedLoad, generalized_forces};
 use super::motion;
 use super::motion::{Motion, Way};
-use super::symbols::Symbols;
-use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Rational};
 
 use inertia::{Inertia, Wrench, central_inertia};
 use links::Links;
-use movement::{Driven, LinkMotion};
+use movement::LinkMotion;
 pub use partials::Differentiable;
 
 /// Mechanisms with fewer speeds have shorter equations in expanded form.
@@ -58,33 +56,23 @@ pub struct Recursion {
 impl Recursion {
     /// The recursion of a mechanism whose bodies form a tree of links and whose speeds are all independent;
     /// `None` for others, and for small ones.
-    pub fn new(
-        algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        symbols: &Symbols,
-        rates: &[Expr],
-    ) -> Outcome<Option<(Kinematics, Self)>> {
+    pub fn new(algebra: &mut Algebra, setting: Setting<'_>) -> Outcome<Option<(Kinematics, Self)>> {
+        let mechanism = setting.mechanism;
         if mechanism.pseudo_velocities.len() < FEWEST_SPEEDS {
             return Ok(None);
         }
         algebra.recursive = true;
-        let kinematics =
-            Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Recursive)?;
-        let (lowering, time) = (
-            Lowering { symbols, rates },
-            TimeDerivative { symbols, rates },
-        );
-        let Some(links) = Links::new(algebra, mechanism, &kinematics, &time) else {
+        let kinematics = Kinematics::new(algebra, setting, &[], Effort::Recursive)?;
+        let Some(links) = Links::new(algebra, setting, &kinematics) else {
             algebra.recursive = false;
             return Ok(None);
         };
-        let own = links.own_inertias(algebra, mechanism, &lowering)?;
+        let own = links.own_inertias(algebra, setting)?;
         let composites = links.composites(algebra, &own);
         let mut rise = vector::ZERO;
         for load in &mechanism.loads {
             if let Some((down, g)) = steady_weight(load) {
-                let g = lowering.lower(&mut algebra.graph, g);
-                let g = g.map_err(|_| vec![division_by_zero(Item::Mechanism)])?;
+                let g = setting.lower_in(&mut algebra.graph, Item::Mechanism, g)?;
                 let up = down.map(|c| algebra.graph.integer((-c).into()));
                 let part = algebra.graph.scale3(g, up);
                 rise = algebra.graph.add3(rise, part);
@@ -115,37 +103,28 @@ impl Recursion {
 
     /// The motions of the links at ω̇ = 0.
     fn unaccelerated(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
-        let driven = Driven {
-            ground: vector::ZERO,
-            accelerations: None,
-            kind: "0",
-        };
-        self.links.motions(algebra, &driven)
+        self.links.motions(algebra, vector::ZERO, &[], "0")
     }
 
     /// The motions of the bodies as sums over speeds.
     pub fn bodies(
         &self,
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        symbols: &Symbols,
+        setting: Setting<'_>,
         kinematics: &Kinematics,
-        rates: &[Expr],
     ) -> Outcome<Vec<BodyMotion>> {
-        let lowering = Lowering { symbols, rates };
+        let (mechanism, symbols) = (setting.mechanism, setting.symbols);
         let motions = self.unaccelerated(algebra);
         let mut bodies = Vec::with_capacity(mechanism.bodies.len());
         for ((id, body), place) in mechanism.bodies.entries().zip(&self.links.bodies) {
             let at_rest = LinkMotion::at_rest(vector::ZERO);
             let motion = place.link.map_or(&at_rest, |link| &motions[link]);
-            let central = central_inertia(&mut algebra.graph, &lowering, id, body)?;
+            let central = central_inertia(&mut algebra.graph, setting, id)?;
             // In the axes of the link, like its acceleration.
             let mut velocity = kinematics.velocity(body.centre);
             if let Some(frame) = body.frame.filter(|&frame| frame != velocity.frame) {
-                let v = kinematics
-                    .frames
-                    .express(&mut algebra.graph, velocity, frame);
-                velocity = FrameVector { frame, v };
+                let v = kinematics.velocity_in(&mut algebra.graph, body.centre, frame);
+                velocity = FrameVector::new(frame, v);
             }
             let turned = algebra.graph.mat_vec(&motion.turning, place.arm);
             let bias = algebra.graph.add3(motion.a, turned);
@@ -225,22 +204,12 @@ impl Recursion {
 
     /// The motions of the links at ω̇ = 0 with the fictitious acceleration of the ground.
     fn falling(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
-        let driven = Driven {
-            ground: self.rise,
-            accelerations: None,
-            kind: "g",
-        };
-        self.links.motions(algebra, &driven)
+        self.links.motions(algebra, self.rise, &[], "g")
     }
 
     /// The links in the actual motion.
     pub fn differentiable(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Differentiable {
-        let driven = Driven {
-            ground: self.rise,
-            accelerations: Some(accelerations),
-            kind: "",
-        };
-        let motions = self.links.motions(algebra, &driven);
+        let motions = self.links.motions(algebra, self.rise, accelerations, "");
         let (own, composites) = (&self.own, &self.composites);
         Differentiable::new(algebra, &self.links, own, composites, self.rise, motions)
     }
@@ -295,12 +264,7 @@ impl Recursion {
         accelerations: &[Expr],
         kind: &'static str,
     ) -> Vec<Expr> {
-        let driven = Driven {
-            ground: self.rise,
-            accelerations: Some(accelerations),
-            kind,
-        };
-        let motions = self.links.motions(algebra, &driven);
+        let motions = self.links.motions(algebra, self.rise, accelerations, kind);
         let wrenches = self.links.wrenches(algebra, &self.own, &motions, kind);
         self.links.felt(&mut algebra.graph, &wrenches)
     }
@@ -319,11 +283,8 @@ impl Recursion {
                 order.push(speed);
             }
         }
-        order.extend(
-            (0..speeds)
-                .filter(|speed| !order.contains(speed))
-                .collect::<Vec<_>>(),
-        );
+        let rest: Vec<usize> = (0..speeds).filter(|k| !order.contains(k)).collect();
+        order.extend(rest);
         order
     }
 
@@ -352,8 +313,7 @@ impl Recursion {
 
 fn partials(algebra: &mut Algebra, v: Vec3, speeds: &[Expr]) -> Vec<Vec3> {
     let by = speeds.iter();
-    by.map(|&speed| v.map(|c| algebra.derivative(c, speed)))
-        .collect()
+    by.map(|&speed| algebra.derivative3(v, speed)).collect()
 }
 
 /// Gravity on all bodies with constant acceleration.

@@ -6,7 +6,7 @@ use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintId, ConstraintKind, FrameId, GROUND, Mechanism};
 
 use super::algebra::Algebra;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, listed, unless_any};
 use super::frames::{FrameVector, Frames};
 use super::rank::{Combination, LinearRow, Standing, is_finite, standings};
 use super::row::Row;
@@ -58,11 +58,8 @@ pub fn leave_out(
             refused.push(row);
         }
     }
-    if errors.is_empty() {
-        Ok(warnings)
-    } else {
-        Err(errors)
-    }
+    unless_any(errors)?;
+    Ok(warnings)
 }
 
 /// The first of the rows `open` that depends on those before, by its index among all rows.
@@ -128,13 +125,9 @@ fn resolved_elsewhere(
     rows: &[Row],
     constraint: ConstraintId,
 ) -> Option<Vec<(usize, Row)>> {
-    match mechanism.constraints[constraint].kind {
-        ConstraintKind::Rolling { normal: None, .. } => {}
-        // A single row has no choice of axes; a surface determines them.
-        ConstraintKind::Rolling { .. }
-        | ConstraintKind::Velocity { .. }
-        | ConstraintKind::FixedVelocity { .. }
-        | ConstraintKind::Position { .. } => return None,
+    // A single row has no choice of axes; a surface determines them.
+    if !has_free_axes(mechanism, constraint) {
+        return None;
     }
     let mut frames_but_ground = mechanism.frames.ids().skip(1);
     frames_but_ground.find_map(|frame| {
@@ -176,10 +169,7 @@ fn resolved_in(
         .collect();
     let mut resolved = Vec::with_capacity(places.len());
     for (axis, (&place, letter)) in places.iter().zip(["x", "y", "z"]).enumerate() {
-        let unit = FrameVector {
-            frame,
-            v: vector::IDENTITY[axis],
-        };
+        let unit = FrameVector::unit(frame, axis);
         let along = frames.express(&mut algebra.graph, unit, GROUND);
         if !rows[place].is_active() {
             if along != vector::IDENTITY[axis] {
@@ -217,6 +207,12 @@ fn resolved_in(
     Some(resolved)
 }
 
+/// Whether the rows of a constraint may be resolved in any axes: those of a contact without a given normal.
+fn has_free_axes(mechanism: &Mechanism, constraint: ConstraintId) -> bool {
+    let kind = &mechanism.constraints[constraint].kind;
+    matches!(kind, ConstraintKind::Rolling { normal: None, .. })
+}
+
 fn contradiction(row: &Row) -> Finding {
     Finding {
         code: Code::DependentConstraints,
@@ -227,20 +223,12 @@ fn contradiction(row: &Row) -> Finding {
 }
 
 fn singular(mechanism: &Mechanism, row: &Row) -> Finding {
-    let help = match mechanism.constraints[row.constraint].kind {
-        ConstraintKind::Rolling { normal: None, .. } => {
-            "on a surface that is not normal to an axis of the ground, name a frame that follows it and \
-             its normal axis, such as `in = \"slope\", normal = \"z\"`; otherwise remove the \
-             constraint, or declare ranges in which it is always redundant"
-        }
-        ConstraintKind::Rolling {
-            normal: Some(_), ..
-        }
-        | ConstraintKind::Velocity { .. }
-        | ConstraintKind::FixedVelocity { .. }
-        | ConstraintKind::Position { .. } => {
-            "remove it, or declare ranges in which it is always redundant"
-        }
+    let help = if has_free_axes(mechanism, row.constraint) {
+        "on a surface that is not normal to an axis of the ground, name a frame that follows it and \
+         its normal axis, such as `in = \"slope\", normal = \"z\"`; otherwise remove the \
+         constraint, or declare ranges in which it is always redundant"
+    } else {
+        "remove it, or declare ranges in which it is always redundant"
     };
     Finding {
         code: Code::RedundantConstraint,
@@ -269,22 +257,21 @@ fn redundancy(
     if rows[spare].of_position || !others.is_empty() && others.iter().all(own) {
         return None;
     }
-    let names: Vec<String> = others
-        .into_iter()
-        .map(|other| format!("`{}`", rows[other].name))
-        .collect();
-    let reason = if names.is_empty() {
+    let reason = if others.is_empty() {
         "always holds".to_owned()
     } else {
-        format!("follows from {}", names.join(", "))
+        let names = others.into_iter().map(|other| rows[other].name.as_str());
+        format!("follows from {}", listed(names))
     };
-    Some(Finding {
+    Some(omission(&rows[spare].name, rows[spare].constraint, &reason))
+}
+
+/// The warning for an omitted row or constraint that `reason`, such as `follows from ...`.
+pub(super) fn omission(name: &str, constraint: ConstraintId, reason: &str) -> Finding {
+    Finding {
         code: Code::RedundantConstraint,
-        message: format!(
-            "`{}` {reason} and is left out: the motion is the same without it",
-            rows[spare].name
-        ),
-        item: Item::Constraint(rows[spare].constraint),
+        message: format!("`{name}` {reason} and is left out: the motion is the same without it"),
+        item: Item::Constraint(constraint),
         help: "remove it".to_owned(),
-    })
+    }
 }

@@ -16,8 +16,8 @@ use appell_spec::units::{Dimension, Unit};
 
 use super::arguments::function_arguments;
 use super::assemble::by_speed;
-use super::expressions::Lowering;
-use super::finding::{Item, Outcome, division_by_zero};
+use super::expressions::Setting;
+use super::finding::{Item, Outcome};
 use super::info::{info, tabulated_inputs};
 use super::symbols::ids;
 use super::{Derivation, derive};
@@ -210,6 +210,7 @@ impl Linear {
 }
 
 /// Columns of Y, with their parameters.
+#[derive(Default)]
 struct Columns {
     parameters: Vec<Linear>,
     without_effect: Vec<String>,
@@ -255,14 +256,8 @@ impl Derivation {
             .map(|id| symbol(self, id))
             .collect();
         let mut central = Substitution::by_zero(&self.algebra.graph, &centres);
-        let about_points = applied(&mut central, self, &demand)?;
-        let mut columns = Columns {
-            parameters: Vec::new(),
-            without_effect: Vec::new(),
-            entries: Vec::new(),
-            values: Vec::new(),
-            rest: Vec::new(),
-        };
+        let about_points = self.algebra.apply(&mut central, &demand)?;
+        let mut columns = Columns::default();
         for body in bodies {
             let name = &mechanism.bodies[body.body].name;
             let [mass, moments, inertia] = self.inertial_values(mechanism, body)?;
@@ -272,7 +267,7 @@ impl Derivation {
             columns.push(self, linear, entries, mass[0]);
             for (axis, id) in body.centre.into_iter().flatten().enumerate() {
                 let by_centre = self.slopes(&demand, &[symbol(self, id)]);
-                let by_centre = applied(&mut central, self, &by_centre)?;
+                let by_centre = self.algebra.apply(&mut central, &by_centre)?;
                 let entries = self.slopes(&by_centre, &[m]);
                 let name = format!("m{}_{name}", AXES[axis]);
                 let linear = Linear::new(&name, Dimension::integers([1, 1, 0, 0, 0, 0, 0]));
@@ -288,10 +283,10 @@ impl Derivation {
         }
         let inertial: Vec<Expr> = self.symbols.parameters[mechanism.parameters.len()..].to_vec();
         let mut massless = Substitution::by_zero(&self.algebra.graph, &inertial);
-        let loads = applied(&mut massless, self, &about_points)?;
+        let loads = self.algebra.apply(&mut massless, &about_points)?;
         let linear = self.linear_parameters(mechanism, &about_points, &inertial, &mut columns);
         let mut without = Substitution::by_zero(&self.algebra.graph, &linear);
-        columns.rest = applied(&mut without, self, &loads)?;
+        columns.rest = self.algebra.apply(&mut without, &loads)?;
         Ok(columns)
     }
 
@@ -336,28 +331,22 @@ impl Derivation {
         mechanism: &Mechanism,
         body: &GeneralBody,
     ) -> Outcome<[Vec<Expr>; 3]> {
-        let failed = |_| vec![division_by_zero(Item::Body(body.body))];
-        let known = &mechanism.bodies[body.body];
-        let (symbols, graph) = (&self.symbols, &mut self.algebra.graph);
-        let lowering = Lowering {
-            symbols,
-            rates: &symbols.rates,
-        };
-        let mass = lowering.lower(graph, &known.mass).map_err(failed)?;
+        let (item, known) = (Item::Body(body.body), &mechanism.bodies[body.body]);
+        let setting = Setting::free(mechanism, &self.symbols);
+        let graph = &mut self.algebra.graph;
+        let mass = setting.lower_in(graph, item, &known.mass)?;
         let c = if body.about == known.centre {
             vector::ZERO
         } else {
             let at = &mechanism.points[known.centre].at;
-            lowering.lower_all(graph, at).map_err(failed)?
+            setting.lower_all_in(graph, item, at)?
         };
         let moments = graph.scale3(mass, c);
         let mut inertia = Vec::new();
         if let Some(central) = &known.inertia {
             let square = graph.dot(c, moments);
             for (i, j) in PAIRS {
-                let own = lowering
-                    .lower(graph, &central.matrix[i][j])
-                    .map_err(failed)?;
+                let own = setting.lower_in(graph, item, &central.matrix[i][j])?;
                 let product = graph.mul(c[i], moments[j]);
                 let spread = if i == j { square } else { Graph::ZERO };
                 let steiner = graph.sub(spread, product);
@@ -366,13 +355,4 @@ impl Derivation {
         }
         Ok([vec![mass], moments.to_vec(), inertia])
     }
-}
-
-fn applied(
-    substitution: &mut Substitution,
-    derivation: &mut Derivation,
-    exprs: &[Expr],
-) -> Outcome<Vec<Expr>> {
-    let applied = substitution.apply_all(&mut derivation.algebra.graph, exprs);
-    applied.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
 }

@@ -8,68 +8,88 @@ use appell_spec::expr::{Expr as Spec, Quantity, Response};
 use appell_spec::mechanism::{Axis, ConstraintId, FrameId, GROUND, Mechanism};
 use rustc_hash::FxHashSet;
 
+use super::Derivation;
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::contacts::Contact;
-use super::elimination::Violation;
-use super::finding::{Finding, Item, Outcome};
+use super::expressions::Setting;
+use super::finding::{Finding, Item, Outcome, unless_any};
 use super::frames::FrameVector;
-use super::gibbs_appell::BodyMotion;
 use super::given::Given;
 use super::kinematics::Kinematics;
-use super::loads::{AppliedLoad, forces};
+use super::loads::forces;
 use super::reactions::reactions;
 use super::symbols::{Symbols, answer};
-use super::time::TimeDerivative;
 use crate::symbolic::Expr;
 use crate::symbolic::vector::Vec3;
 
 /// The derived motion, as needed for accelerations and forces.
-pub struct Answering<'a> {
-    /// The mechanism.
-    pub mechanism: &'a Mechanism,
-    /// Its symbols.
-    pub symbols: &'a Symbols,
-    /// Constraint rows.
-    pub constraints: &'a Constraints,
-    /// Contacts, with their normals.
-    pub contacts: &'a [Contact],
-    /// Velocities at which constraint rows are violated.
-    pub violation: &'a Violation,
-    /// Velocities of points and frames.
-    pub kinematics: &'a Kinematics,
-    /// The actual q̇.
-    pub rates: &'a [Expr],
-    /// Whether contacts creep, so that `rates` differ from those in `kinematics`.
-    pub creeps: bool,
-    /// Motions of the bodies.
-    pub bodies: &'a [BodyMotion],
+struct Answering<'a> {
+    /// With the actual q̇.
+    setting: Setting<'a>,
+    constraints: &'a Constraints,
+    contacts: &'a [Contact],
+    kinematics: &'a Kinematics,
+    /// Whether contacts creep, so that the actual q̇ differ from those in `kinematics`.
+    creeps: bool,
     /// ω̇: symbols or values.
-    pub accelerations: &'a [Expr],
-    /// Applied loads.
-    pub loads: &'a [AppliedLoad],
-    /// Reactions on which loads depend.
-    pub reactions_in_loads: &'a [(Expr, Expr)],
-    /// Prescribed rates, with the forces of the drives.
-    pub given: &'a Given,
+    accelerations: &'a [Expr],
+    /// By place of [`Constraints::reactions`]; none if no reaction is wanted.
+    reactions: Vec<Vec3>,
+    given: &'a Given,
 }
 
-impl Answering<'_> {
-    /// Values for the symbols of accelerations and forces.
-    pub fn values(
-        &self,
-        algebra: &mut Algebra,
+impl Derivation {
+    /// Values for the symbols of accelerations and forces, for given ω̇ and reactions on which loads depend.
+    pub(super) fn answers(
+        &mut self,
+        mechanism: &Mechanism,
         wanted: &[(Response, Expr)],
+        accelerations: &[Expr],
+        reactions_in_loads: &[(Expr, Expr)],
     ) -> Outcome<Vec<(Expr, Expr)>> {
-        let mut values = forces(&mut algebra.graph, self.kinematics, self.loads, wanted);
+        let bodies = self.bodies_in_ground(mechanism);
+        let (algebra, kinematics) = (&mut self.algebra, &self.kinematics);
+        let values = forces(&mut algebra.graph, kinematics, &self.loads, wanted);
         let reacts = |(response, _): &(Response, Expr)| {
             matches!(response, Response::Reaction(..) | Response::NormalForce(_))
         };
+        let setting = Setting::new(mechanism, &self.symbols, &self.coordinate_rates);
         let reactions = if wanted.iter().any(reacts) {
-            self.reactions(algebra)?
+            reactions(
+                algebra,
+                setting,
+                &self.constraints,
+                &self.velocities.violating,
+                &bodies,
+                accelerations,
+                reactions_in_loads,
+            )?
         } else {
             Vec::new()
         };
+        let answering = Answering {
+            setting,
+            constraints: &self.constraints,
+            contacts: &self.contacts,
+            kinematics,
+            creeps: self.coordinate_rates != self.rolling_rates,
+            accelerations,
+            reactions,
+            given: &self.given,
+        };
+        answering.values(algebra, wanted, values)
+    }
+}
+
+impl Answering<'_> {
+    /// `values` with those of the other accelerations and forces.
+    fn values(
+        &self,
+        algebra: &mut Algebra,
+        wanted: &[(Response, Expr)],
+        mut values: Vec<(Expr, Expr)>,
+    ) -> Outcome<Vec<(Expr, Expr)>> {
         let mut findings = Vec::new();
         for &(response, symbol) in wanted {
             algebra.check_size()?;
@@ -83,10 +103,8 @@ impl Answering<'_> {
                     let w = self.kinematics.frames.angular_velocity(of);
                     Ok(self.rate_of(algebra, w, frame)[axis.index()])
                 }
-                Response::Reaction(constraint, along) => {
-                    self.reaction(algebra, &reactions, constraint, along)
-                }
-                Response::NormalForce(constraint) => self.normal(algebra, &reactions, constraint),
+                Response::Reaction(constraint, along) => self.reaction(algebra, constraint, along),
+                Response::NormalForce(constraint) => self.normal(algebra, constraint),
                 Response::DriveForce(speed) => {
                     let drives = self.given.drives(&mut algebra.graph, self.accelerations);
                     let mut drives = drives.into_iter();
@@ -96,27 +114,11 @@ impl Answering<'_> {
             };
             match value {
                 Ok(value) => values.push((symbol, algebra.shortest(value))),
-                Err(reason) => findings.push(untold(self.mechanism, response, reason)),
+                Err(reason) => findings.push(untold(self.setting.mechanism, response, reason)),
             }
         }
-        if findings.is_empty() {
-            Ok(values)
-        } else {
-            Err(findings)
-        }
-    }
-
-    fn reactions(&self, algebra: &mut Algebra) -> Outcome<Vec<Vec3>> {
-        reactions(
-            algebra,
-            self.mechanism,
-            self.symbols,
-            self.constraints,
-            self.violation,
-            self.bodies,
-            self.accelerations,
-            self.reactions_in_loads,
-        )
+        unless_any(findings)?;
+        Ok(values)
     }
 
     /// The rate of a vector relative to the ground, in the components of a frame.
@@ -125,16 +127,13 @@ impl Answering<'_> {
         let FrameVector { frame: own, v } = if self.creeps {
             // With creep, these angular velocities are not those of the actual motion.
             let v = frames.express(&mut algebra.graph, vector, GROUND);
-            FrameVector { frame: GROUND, v }
+            FrameVector::new(GROUND, v)
         } else {
             vector
         };
-        let time = TimeDerivative {
-            symbols: self.symbols,
-            rates: self.rates,
-        };
-        let mut rate = time.of3(algebra, v);
-        for (&speed, &acceleration) in self.symbols.speeds.iter().zip(self.accelerations) {
+        let mut rate = self.setting.rate3(algebra, v);
+        let speeds = self.setting.symbols.speeds.iter();
+        for (&speed, &acceleration) in speeds.zip(self.accelerations) {
             let partial = v.map(|component| algebra.derivative(component, speed));
             let part = algebra.graph.scale3(acceleration, partial);
             rate = algebra.graph.add3(rate, part);
@@ -142,48 +141,43 @@ impl Answering<'_> {
         let graph = &mut algebra.graph;
         let turning = graph.cross(frames.angular_velocity(own).v, v);
         let v = graph.add3(rate, turning);
-        frames.express(graph, FrameVector { frame: own, v }, frame)
+        frames.express(graph, FrameVector::new(own, v), frame)
     }
 
     /// A component of the reaction where a constraint acts, or its multiplier.
     fn reaction(
         &self,
         algebra: &mut Algebra,
-        reactions: &[Vec3],
         constraint: ConstraintId,
         along: Option<(Axis, FrameId)>,
     ) -> Result<Expr, Untold> {
-        let place = self.place_of(constraint)?;
-        let v = *reactions.get(place).ok_or(Untold::Undetermined)?;
+        let v = self.reaction_of(constraint)?;
         let Some((axis, frame)) = along else {
             return Ok(v[0]);
         };
-        let force = FrameVector { frame: GROUND, v };
+        let force = FrameVector::new(GROUND, v);
         let frames = &self.kinematics.frames;
         Ok(frames.express(&mut algebra.graph, force, frame)[axis.index()])
     }
 
-    /// Index of the reaction of a constraint among the reported ones.
-    fn place_of(&self, constraint: ConstraintId) -> Result<usize, Untold> {
+    /// The reaction where a constraint acts, if it is reported.
+    fn reaction_of(&self, constraint: ConstraintId) -> Result<Vec3, Untold> {
         let mut rows = self.constraints.rows_of(constraint);
         let place = rows.next().and_then(|row| self.constraints.reported(row));
-        place.ok_or(Untold::Undetermined)
+        place
+            .map(|place| self.reactions[place])
+            .ok_or(Untold::Undetermined)
     }
 
-    fn normal(
-        &self,
-        algebra: &mut Algebra,
-        reactions: &[Vec3],
-        constraint: ConstraintId,
-    ) -> Result<Expr, Untold> {
+    fn normal(&self, algebra: &mut Algebra, constraint: ConstraintId) -> Result<Expr, Untold> {
         // A reaction that is not reported has no contact.
-        self.place_of(constraint)?;
+        self.reaction_of(constraint)?;
         let mut contacts = self.contacts.iter();
         let contact = contacts
             .find(|contact| contact.constraint == constraint)
             .ok_or(Untold::Normal)?;
-        let force = reactions.get(contact.place).ok_or(Untold::Undetermined)?;
-        Ok(algebra.graph.dot(contact.normal, *force))
+        let force = self.reactions[contact.place];
+        Ok(algebra.graph.dot(contact.normal, force))
     }
 }
 

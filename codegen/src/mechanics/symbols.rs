@@ -1,7 +1,7 @@
 //! The symbols of a mechanism.
 
 use appell_spec::expr::{Motion as MotionQuantity, Quantity, Response};
-use appell_spec::mechanism::{Axis, ConstraintKind, FrameId, LoadId, Mechanism, PointId};
+use appell_spec::mechanism::{Axis, ConstraintKind, FrameId, LoadId, Mechanism, PointId, SpeedId};
 use rustc_hash::FxHashMap;
 
 use crate::symbolic::{Expr, Graph, SymbolId};
@@ -70,9 +70,7 @@ impl Symbols {
             .collect();
         let time = graph.symbol("t");
         let pi = graph.symbol("pi");
-        let named = Named::new(graph, mechanism);
-        let of_reactions = of_reactions(graph, mechanism);
-        Self {
+        let mut symbols = Self {
             parameters,
             coordinates,
             rates,
@@ -80,29 +78,22 @@ impl Symbols {
             accelerations,
             inputs,
             signals,
-            motions: named.motions,
-            responses: named.responses,
-            named: named.all,
-            of_reactions,
+            motions: Vec::new(),
+            responses: Vec::new(),
+            named: FxHashMap::default(),
+            of_reactions: FxHashMap::default(),
             time,
             pi,
             weights: Vec::new(),
-        }
+        };
+        symbols.name_quantities(graph, mechanism);
+        symbols.of_reactions = of_reactions(graph, mechanism);
+        symbols
     }
-}
 
-/// A symbol for each kinematic quantity and force; names in a spec have no parentheses.
-#[derive(Default)]
-struct Named {
-    motions: Vec<(MotionQuantity, Expr)>,
-    responses: Vec<(Response, Expr)>,
-    all: FxHashMap<Quantity, Expr>,
-}
-
-impl Named {
-    fn new(graph: &mut Graph, mechanism: &Mechanism) -> Self {
-        let mut named = Self::default();
-        let mut see = |quantity| named.see(graph, mechanism, quantity);
+    /// A symbol for each kinematic quantity and force; names in a spec have no parentheses.
+    fn name_quantities(&mut self, graph: &mut Graph, mechanism: &Mechanism) {
+        let mut see = |quantity| self.see(graph, mechanism, quantity);
         for load in &mechanism.loads {
             for expr in load.kind.expressions() {
                 expr.visit(&mut see);
@@ -122,23 +113,22 @@ impl Named {
         for output in &mechanism.outputs {
             output.value.visit(&mut see);
         }
-        named
     }
 
     fn see(&mut self, graph: &mut Graph, mechanism: &Mechanism, quantity: Quantity) {
-        if self.all.contains_key(&quantity) {
+        if self.named.contains_key(&quantity) {
             return;
         }
         match quantity {
             Quantity::Motion(motion) => {
                 let symbol = graph.symbol(&shown(mechanism, motion));
                 self.motions.push((motion, symbol));
-                self.all.insert(quantity, symbol);
+                self.named.insert(quantity, symbol);
             }
             Quantity::Response(response) => {
                 let symbol = graph.symbol(&answer(mechanism, response));
                 self.responses.push((response, symbol));
-                self.all.insert(quantity, symbol);
+                self.named.insert(quantity, symbol);
             }
             _ => {}
         }
@@ -240,6 +230,11 @@ impl Symbols {
     pub fn named(&self, quantity: Quantity) -> Option<Expr> {
         self.named.get(&quantity).copied()
     }
+}
+
+/// Name of a pseudo-velocity, by its index.
+pub(super) fn speed_name(mechanism: &Mechanism, speed: usize) -> &str {
+    &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name
 }
 
 /// The ids of expressions that are symbols.

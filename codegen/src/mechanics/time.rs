@@ -1,21 +1,14 @@
 //! Time derivatives along a motion.
 
 use super::algebra::Algebra;
-use super::symbols::Symbols;
+use super::expressions::Setting;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
 
-/// d/dt of functions of coordinates, signals and time, with given generalised velocities.
-pub struct TimeDerivative<'a> {
-    /// Symbols of the mechanism.
-    pub symbols: &'a Symbols,
-    /// Generalised velocities q̇, one per coordinate.
-    pub rates: &'a [Expr],
-}
-
-impl TimeDerivative<'_> {
-    /// `Σ ∂e/∂q q̇ + Σ ∂e/∂s ṡ + ∂e/∂t` at fixed pseudo-velocities.
-    pub fn of(&self, algebra: &mut Algebra, expr: Expr) -> Expr {
+impl Setting<'_> {
+    /// d/dt of a function of coordinates, signals and time, at fixed pseudo-velocities:
+    /// `Σ ∂e/∂q q̇ + Σ ∂e/∂s ṡ + ∂e/∂t`.
+    pub fn rate(self, algebra: &mut Algebra, expr: Expr) -> Expr {
         let mut parts = vec![algebra.derivative(expr, self.symbols.time)];
         for (&coordinate, &rate) in self.symbols.coordinates.iter().zip(self.rates) {
             let partial = algebra.derivative(expr, coordinate);
@@ -31,10 +24,10 @@ impl TimeDerivative<'_> {
     }
 
     /// The component-wise derivative, in the frame of the components.
-    pub fn of3(&self, algebra: &mut Algebra, v: Vec3) -> Vec3 {
+    pub fn rate3(self, algebra: &mut Algebra, v: Vec3) -> Vec3 {
         if v.iter().all(|&c| algebra.graph.as_number(c).is_some()) {
             return [Graph::ZERO; 3];
         }
-        v.map(|component| self.of(algebra, component))
+        v.map(|component| self.rate(algebra, component))
     }
 }

@@ -16,7 +16,7 @@ use super::shapes::{Solid, solids};
 use super::space::{Matrix, Vector, add, dot, length};
 use super::view::View;
 use appell_codegen::mechanics::algebra::Algebra;
-use appell_codegen::mechanics::expressions::Lowering;
+use appell_codegen::mechanics::expressions::Setting;
 use appell_codegen::mechanics::finding::{Item, Outcome, division_by_zero};
 use appell_codegen::mechanics::frames::FrameVector;
 use appell_codegen::mechanics::kinematics::{Effort, Kinematics};
@@ -115,17 +115,11 @@ impl FilmMaker {
         let mut graph = Graph::new();
         let symbols = Symbols::new(&mut graph, mechanism);
         let mut algebra = Algebra::new(graph, mechanism, &symbols);
-        let kinematics = Kinematics::new(
-            &mut algebra,
-            mechanism,
-            &symbols,
-            &symbols.rates,
-            &[],
-            Effort::Plain,
-        )?;
-        let placement = Placement::new(&mut algebra, mechanism, &symbols, &kinematics)?;
+        let free = Setting::free(mechanism, &symbols);
+        let kinematics = Kinematics::new(&mut algebra, free, &[], Effort::Plain)?;
+        let placement = Placement::new(&mut algebra, free, &kinematics)?;
         let flat_across = placement.flat_across(&mut algebra);
-        let applied = applied(&mut algebra, mechanism, &symbols, &kinematics)?;
+        let applied = applied(&mut algebra, free, &kinematics)?;
         Ok(Self {
             mechanism: mechanism.clone(),
             graph: algebra.graph,
@@ -228,29 +222,24 @@ fn reactions(mechanism: &Mechanism, model: &dyn Model) -> Vec<(usize, Force)> {
 /// are omitted and have no arrow.
 fn applied(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
+    setting: Setting<'_>,
     kinematics: &Kinematics,
 ) -> Outcome<Vec<(Force, Vec3)>> {
-    let lowering = Lowering {
-        symbols,
-        rates: &symbols.rates,
-    };
+    let (mechanism, symbols) = (setting.mechanism, setting.symbols);
     let names_nothing = symbols.motions.is_empty() && symbols.responses.is_empty();
     let acting = if names_nothing {
         Vec::new()
     } else {
-        applied_loads(algebra, mechanism, symbols, kinematics, &symbols.rates)?
+        applied_loads(algebra, setting, kinematics)?
     };
     let graph = &mut algebra.graph;
     let in_ground = |graph: &mut Graph, index: LoadId, frame: FrameId, vector: &Components| {
         if let Some(Acts::Vector(force)) = acting.get(index.index()).map(|load| load.acts) {
             return Ok(kinematics.frames.express(graph, force, GROUND));
         }
-        let v = lowering.lower_all(graph, vector)?;
-        Ok(kinematics
-            .frames
-            .express(graph, FrameVector { frame, v }, GROUND))
+        let v = setting.lower_all(graph, vector)?;
+        let v = FrameVector::new(frame, v);
+        Ok(kinematics.frames.express(graph, v, GROUND))
     };
     let mut all = Vec::new();
     for (index, load) in mechanism.loads.entries() {
@@ -258,10 +247,10 @@ fn applied(
         let force = |kind, at| Force { kind, at };
         match &load.kind {
             LoadKind::Gravity { down, acceleration } => {
-                let g = lowering.lower(graph, acceleration).map_err(divides)?;
+                let g = setting.lower(graph, acceleration).map_err(divides)?;
                 let down = down.map(|c| graph.integer(c.into()));
                 for body in &mechanism.bodies {
-                    let mass = lowering.lower(graph, &body.mass).map_err(divides)?;
+                    let mass = setting.lower(graph, &body.mass).map_err(divides)?;
                     let weight = graph.mul(mass, g);
                     let force = force(ForceKind::Weight, body.centre);
                     all.push((force, graph.scale3(weight, down)));

@@ -2,12 +2,11 @@
 
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::mechanics::algebra::Algebra;
-use appell_codegen::mechanics::expressions::Lowering;
-use appell_codegen::mechanics::finding::{Item, Outcome, division_by_zero};
+use appell_codegen::mechanics::expressions::Setting;
+use appell_codegen::mechanics::finding::{Item, Outcome};
 use appell_codegen::mechanics::frames::FrameVector;
 use appell_codegen::mechanics::initial::InitialState;
 use appell_codegen::mechanics::kinematics::Kinematics;
-use appell_codegen::mechanics::symbols::Symbols;
 use appell_codegen::mechanics::{Derivation, assemble};
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::symbolic::vector::{IDENTITY, Vec3};
@@ -53,7 +52,7 @@ impl Scene {
         let symbols = derivation.symbols.clone();
         let placement = {
             let (algebra, kinematics) = (&mut derivation.algebra, &derivation.kinematics);
-            Placement::new(algebra, mechanism, &symbols, kinematics)?
+            Placement::new(algebra, Setting::free(mechanism, &symbols), kinematics)?
         };
         let flat_across = placement.flat_across(&mut derivation.algebra);
         let kinds = [FunctionKind::PositionConstraints];
@@ -152,13 +151,12 @@ pub(super) struct Inertia {
 impl Placement {
     pub(super) fn new(
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        symbols: &Symbols,
+        setting: Setting<'_>,
         kinematics: &Kinematics,
     ) -> Outcome<Self> {
-        let graph = &mut algebra.graph;
+        let (mechanism, graph) = (setting.mechanism, &mut algebra.graph);
         let points = mechanism.points.ids();
-        let points = points.map(|point| kinematics.position(graph, mechanism, point));
+        let points = points.map(|point| kinematics.position(graph, point));
         let points = points.collect();
         let axes = |frame| {
             IDENTITY.map(|v| {
@@ -167,26 +165,21 @@ impl Placement {
             })
         };
         let frames = mechanism.frames.ids().map(axes).collect();
-        let lowering = Lowering {
-            symbols,
-            rates: &symbols.rates,
-        };
         let mut turns = List::default();
         for (id, frame) in mechanism.frames.entries() {
             let angles = frame.turns.iter();
-            let angles = angles.map(|turn| lowering.lower(graph, &turn.angle));
-            let angles = angles.collect::<Result<Vec<_>, _>>();
-            turns.push(angles.map_err(|_| vec![division_by_zero(Item::Frame(id))])?);
+            let angles = angles.map(|turn| setting.lower_in(graph, Item::Frame(id), &turn.angle));
+            turns.push(angles.collect::<Outcome<Vec<_>>>()?);
         }
         let mut bodies = List::default();
         for (index, body) in mechanism.bodies.entries() {
-            let divides = |_| vec![division_by_zero(Item::Body(index))];
-            let mass = lowering.lower(graph, &body.mass).map_err(divides)?;
+            let item = Item::Body(index);
+            let mass = setting.lower_in(graph, item, &body.mass)?;
             let mut lowered = None;
             if let Some(inertia) = &body.inertia {
                 let mut matrix = [[Graph::ZERO; 3]; 3];
                 for (to, row) in matrix.iter_mut().zip(&inertia.matrix) {
-                    *to = lowering.lower_all(graph, row).map_err(divides)?;
+                    *to = setting.lower_all_in(graph, item, row)?;
                 }
                 lowered = Some((inertia.frame, matrix));
             }

@@ -22,8 +22,27 @@ pub(in super::super) fn by_speed(
         Layout::Vector(Space::GeneralizedForces),
         entries,
     )
-    .labelled(speeds.iter().map(|speed| format!("{name}_{}", speed.name)))
+    .labelled(listed(name, speeds).into_iter())
     .under(about, all)
+}
+
+/// `symbol_name` for every quantity.
+pub(in super::super) fn listed(symbol: &str, quantities: &[Quantity]) -> Vec<String> {
+    let names = quantities.iter();
+    names
+        .map(|quantity| format!("{symbol}_{}", quantity.name))
+        .collect()
+}
+
+/// `symbol_row_column` for every pair, row by row.
+pub(in super::super) fn paired(
+    symbol: &str,
+    rows: &[Quantity],
+    columns: &[Quantity],
+) -> Vec<String> {
+    let rows = rows.iter();
+    rows.flat_map(|row| listed(&format!("{symbol}_{}", row.name), columns))
+        .collect()
 }
 
 /// The constraints without rows, with the reason.

@@ -3,7 +3,7 @@
 //! with its third power on a chain.
 
 use super::super::algebra::{Algebra, named3};
-use super::inertia::{Inertia, Wrench};
+use super::inertia::{Inertia, Wrench, plus};
 use super::links::{Link, Links, Step};
 use super::movement::LinkMotion;
 use crate::symbolic::vector::{self, Mat3, Vec3};
@@ -48,7 +48,8 @@ impl Links {
         motions: &[LinkMotion],
         forces: &[Expr],
     ) -> Option<Vec<Expr>> {
-        let mut speeds: Vec<usize> = self.all.iter().flat_map(Link::speeds).collect();
+        let columns = self.all.iter().flat_map(|link| &link.columns);
+        let mut speeds: Vec<usize> = columns.map(|&(speed, _)| speed).collect();
         speeds.sort_unstable();
         if !speeds.iter().copied().eq(0..forces.len()) {
             return None;
@@ -67,7 +68,7 @@ impl Links {
             let mut own_pivots = Vec::with_capacity(link.columns.len());
             for &(speed, column) in &link.columns {
                 let name = &self.speeds[speed];
-                let (alpha, a) = link.directed(column);
+                let (alpha, a) = link.step.directed(column);
                 let taken = articulated.takes(&mut algebra.graph, alpha, a);
                 let taken = taken.named(algebra, "", &format!("{}_{name}", link.name));
                 let graph = &mut algebra.graph;
@@ -132,7 +133,7 @@ impl Links {
                 let value = graph.div(rest, pivot.inertia);
                 let value = graph.name(&format!("{}_dot", self.speeds[pivot.speed]), value);
                 accelerations[pivot.speed] = value;
-                let (alpha, a) = link.directed(pivot.column);
+                let (alpha, a) = link.step.directed(pivot.column);
                 let (alpha, a) = (graph.scale3(value, alpha), graph.scale3(value, a));
                 motion = Beyond {
                     alpha: graph.add3(motion.alpha, alpha),
@@ -149,51 +150,25 @@ impl Links {
 }
 
 impl Link {
-    fn speeds(&self) -> impl Iterator<Item = usize> + '_ {
-        self.columns.iter().map(|&(speed, _)| speed)
-    }
-
-    /// A column as angular and linear acceleration.
-    fn directed(&self, column: Vec3) -> (Vec3, Vec3) {
-        match self.step {
-            Step::Rotation { .. } => (column, vector::ZERO),
-            Step::Shift { .. } => (vector::ZERO, column),
-        }
-    }
-
     /// The acceleration of the carrier expressed at the link.
     fn carried(&self, graph: &mut Graph, carrier: Beyond) -> Beyond {
-        match &self.step {
-            Step::Rotation { turns, .. } => {
-                let mut inward = |v: Vec3| turns.iter().fold(v, |v, turn| turn.in_child(graph, v));
-                Beyond {
-                    alpha: inward(carrier.alpha),
-                    a: inward(carrier.a),
-                }
-            }
-            Step::Shift { d, .. } => {
-                let turning = graph.cross(carrier.alpha, *d);
-                Beyond {
-                    alpha: carrier.alpha,
-                    a: graph.add3(carrier.a, turning),
-                }
-            }
+        let alpha = self.step.inward(graph, carrier.alpha);
+        let mut a = self.step.inward(graph, carrier.a);
+        if let Step::Shift { d, .. } = self.step {
+            let turning = graph.cross(alpha, d);
+            a = graph.add3(a, turning);
         }
+        Beyond { alpha, a }
     }
 
     fn articulated_in_carrier(&self, graph: &mut Graph, own: &Articulated) -> Articulated {
-        match &self.step {
-            Step::Rotation { turns, .. } => {
-                let mut outward = |t: &Mat3| {
-                    (turns.iter().rev()).fold(*t, |t, turn| turn.tensor_in_parent(graph, &t))
-                };
-                Articulated {
-                    moment: outward(&own.moment),
-                    coupling: outward(&own.coupling),
-                    mass: outward(&own.mass),
-                }
-            }
-            Step::Shift { d, .. } => own.shifted(graph, *d),
+        if let Step::Shift { d, .. } = self.step {
+            return own.shifted(graph, d);
+        }
+        Articulated {
+            moment: self.step.tensor_outward(graph, &own.moment),
+            coupling: self.step.tensor_outward(graph, &own.coupling),
+            mass: self.step.tensor_outward(graph, &own.mass),
         }
     }
 }
@@ -212,14 +187,10 @@ impl Articulated {
     }
 
     fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
-        let mut add = |a: &Mat3, b: &Mat3| {
-            let rows = [0, 1, 2];
-            rows.map(|i| graph.add3(a[i], b[i]))
-        };
         Self {
-            moment: add(&self.moment, &other.moment),
-            coupling: add(&self.coupling, &other.coupling),
-            mass: add(&self.mass, &other.mass),
+            moment: plus(graph, &self.moment, &other.moment),
+            coupling: plus(graph, &self.coupling, &other.coupling),
+            mass: plus(graph, &self.mass, &other.mass),
         }
     }
 

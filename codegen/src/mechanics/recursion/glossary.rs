@@ -79,31 +79,25 @@ impl Recursion {
                 continue;
             }
             named.push(name);
-            let all = |letters: &[&str], names: Names| -> Vec<(String, Names)> {
-                letters
-                    .iter()
-                    .map(|letter| (format!("{letter}_{name}"), names))
-                    .collect()
-            };
             let moves = [
                 "w", "alpha", "alpha0", "alphag", "a", "a0", "ag", "g", "d_alpha", "d_a",
             ];
-            groups.push(Group {
-                title: format!("Motion of `{name}`."),
-                names: all(&moves, Names::Axes),
-            });
             let carries = [
                 "mass", "mass_own", "h", "h_own", "I", "I_own", "AJ", "AK", "AM",
             ];
-            groups.push(Group {
-                title: format!("What `{name}` carries."),
-                names: all(&carries, Names::Any),
-            });
             let takes = ["n", "f", "n0", "f0", "ng", "fg", "np", "fp", "nt", "ft"];
-            groups.push(Group {
-                title: format!("What `{name}` takes."),
-                names: all(&takes, Names::Axes),
-            });
+            for (title, letters, names) in [
+                (format!("Motion of `{name}`."), &moves[..], Names::Axes),
+                (format!("What `{name}` carries."), &carries, Names::Any),
+                (format!("What `{name}` takes."), &takes, Names::Axes),
+            ] {
+                let named = letters.iter();
+                let names = named.map(|letter| (format!("{letter}_{name}"), names));
+                groups.push(Group {
+                    title,
+                    names: names.collect(),
+                });
+            }
         }
         groups
     }

@@ -1,10 +1,10 @@
 //! Inward recursion: composite inertias, and the mass matrix from them.
 
-use appell_spec::mechanism::{Body, BodyId, Mechanism};
+use appell_spec::mechanism::BodyId;
 
 use super::super::algebra::{Algebra, named3};
-use super::super::expressions::Lowering;
-use super::super::finding::{Item, Outcome, division_by_zero};
+use super::super::expressions::Setting;
+use super::super::finding::{Item, Outcome};
 use super::links::{Link, Links, Place, Step};
 use crate::symbolic::vector::{self, Mat3, Vec3};
 use crate::symbolic::{Expr, Graph};
@@ -37,10 +37,7 @@ impl Inertia {
     };
 
     pub(super) fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
-        let mut tensor = self.tensor;
-        for (row, other) in tensor.iter_mut().zip(other.tensor) {
-            *row = graph.add3(*row, other);
-        }
+        let tensor = plus(graph, &self.tensor, &other.tensor);
         Self {
             mass: graph.add(self.mass, other.mass),
             moment: graph.add3(self.moment, other.moment),
@@ -79,21 +76,31 @@ impl Inertia {
     }
 
     fn named(&self, algebra: &mut Algebra, link: &str) -> Self {
-        let graph = &mut algebra.graph;
-        let mass = graph.name(&format!("mass_{link}"), self.mass);
-        let mut tensor = self.tensor;
-        for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
-            let axes = ['x', 'y', 'z'];
-            let name = format!("I_{link}_{}{}", axes[i], axes[j]);
-            tensor[i][j] = graph.name(&name, self.tensor[i][j]);
-            tensor[j][i] = tensor[i][j];
-        }
+        let mass = algebra.graph.name(&format!("mass_{link}"), self.mass);
+        let tensor = named_tensor(algebra, &format!("I_{link}"), &self.tensor);
         Self {
             mass,
             moment: named3(algebra, &format!("h_{link}"), self.moment),
             tensor,
         }
     }
+}
+
+/// `A + B`
+pub(super) fn plus(graph: &mut Graph, a: &Mat3, b: &Mat3) -> Mat3 {
+    [0, 1, 2].map(|i| graph.add3(a[i], b[i]))
+}
+
+/// A symmetric tensor with names for its components.
+pub(super) fn named_tensor(algebra: &mut Algebra, name: &str, tensor: &Mat3) -> Mat3 {
+    let mut named = *tensor;
+    for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+        let axes = ['x', 'y', 'z'];
+        let name = format!("{name}_{}{}", axes[i], axes[j]);
+        named[i][j] = algebra.graph.name(&name, tensor[i][j]);
+        named[j][i] = named[i][j];
+    }
+    named
 }
 
 /// An inertia, or its rate, with second moments added: `T + tr(P) 1 − P` for a symmetric P.
@@ -119,19 +126,13 @@ pub(super) fn with_products(
 /// Inertia of a body about its centre of mass.
 pub(super) fn central_inertia(
     graph: &mut Graph,
-    lowering: &Lowering<'_>,
+    setting: Setting<'_>,
     id: BodyId,
-    body: &Body,
 ) -> Outcome<Inertia> {
-    let failed = |_| vec![division_by_zero(Item::Body(id))];
-    let mut tensor = [vector::ZERO; 3];
-    if let Some(inertia) = &body.inertia {
-        for (target, row) in tensor.iter_mut().zip(&inertia.matrix) {
-            *target = lowering.lower_all(graph, row).map_err(failed)?;
-        }
-    }
+    let tensor = setting.inertia(graph, id)?;
+    let mass = &setting.mechanism.bodies[id].mass;
     Ok(Inertia {
-        mass: lowering.lower(graph, &body.mass).map_err(failed)?,
+        mass: setting.lower_in(graph, Item::Body(id), mass)?,
         moment: vector::ZERO,
         tensor,
     })
@@ -157,24 +158,13 @@ impl Wrench {
 impl Link {
     /// The same force and moment at the carrier, in its axes.
     pub(super) fn on_carrier(&self, graph: &mut Graph, own: Wrench) -> Wrench {
-        match &self.step {
-            Step::Rotation { turns, .. } => {
-                let outward = |graph: &mut Graph, v: Vec3| {
-                    (turns.iter().rev()).fold(v, |v, turn| turn.in_parent(graph, v))
-                };
-                Wrench {
-                    n: outward(graph, own.n),
-                    f: outward(graph, own.f),
-                }
-            }
-            Step::Shift { d, .. } => {
-                let moment = graph.cross(*d, own.f);
-                Wrench {
-                    n: graph.add3(own.n, moment),
-                    f: own.f,
-                }
-            }
+        let mut n = self.step.outward(graph, own.n);
+        let f = self.step.outward(graph, own.f);
+        if let Step::Shift { d, .. } = self.step {
+            let moment = graph.cross(d, f);
+            n = graph.add3(n, moment);
         }
+        Wrench { n, f }
     }
 
     /// The work of a force and a moment along a column of the step.
@@ -186,17 +176,15 @@ impl Link {
     }
 
     fn inertia_in_carrier(&self, graph: &mut Graph, own: &Inertia) -> Inertia {
-        match &self.step {
-            Step::Rotation { turns, .. } => {
-                let mut inertia = own.clone();
-                for turn in turns.iter().rev() {
-                    inertia.moment = turn.in_parent(graph, inertia.moment);
-                    inertia.tensor = turn.tensor_in_parent(graph, &inertia.tensor);
-                }
-                inertia
-            }
-            Step::Shift { d, .. } => own.shifted(graph, *d),
+        if let Step::Shift { d, .. } = self.step {
+            return own.shifted(graph, d);
         }
+        let mut inertia = own.clone();
+        for turn in self.step.turns().iter().rev() {
+            inertia.moment = turn.in_parent(graph, inertia.moment);
+            inertia.tensor = turn.tensor_in_parent(graph, &inertia.tensor);
+        }
+        inertia
     }
 }
 
@@ -205,16 +193,15 @@ impl Links {
     pub(super) fn own_inertias(
         &self,
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
-        lowering: &Lowering<'_>,
+        setting: Setting<'_>,
     ) -> Outcome<Vec<Inertia>> {
         let mut inertias = vec![Inertia::NONE; self.all.len()];
-        for ((id, body), &Place { link, arm }) in mechanism.bodies.entries().zip(&self.bodies) {
+        for (id, &Place { link, arm }) in setting.mechanism.bodies.ids().zip(&self.bodies) {
             let Some(link) = link else {
                 continue;
             };
             let graph = &mut algebra.graph;
-            let central = central_inertia(graph, lowering, id, body)?;
+            let central = central_inertia(graph, setting, id)?;
             let placed = central.shifted(graph, arm);
             inertias[link] = inertias[link].plus(graph, &placed);
         }
@@ -249,7 +236,8 @@ impl Links {
         for (place, link) in self.all.iter().enumerate() {
             for &(speed, column) in &link.columns {
                 let name = &self.speeds[speed];
-                let mut wrench = self.resistance(algebra, place, column, &composites[place]);
+                let (alpha, a) = link.step.directed(column);
+                let mut wrench = composites[place].resists(&mut algebra.graph, alpha, a);
                 let mut at = Some(place);
                 while let Some(here) = at {
                     let link_here = &self.all[here];
@@ -275,20 +263,5 @@ impl Links {
             }
         }
         matrix
-    }
-
-    /// Force and moment per unit acceleration along a column of a link.
-    pub(super) fn resistance(
-        &self,
-        algebra: &mut Algebra,
-        link: usize,
-        column: Vec3,
-        composite: &Inertia,
-    ) -> Wrench {
-        let (alpha, a) = match self.all[link].step {
-            Step::Rotation { .. } => (column, vector::ZERO),
-            Step::Shift { .. } => (vector::ZERO, column),
-        };
-        composite.resists(&mut algebra.graph, alpha, a)
     }
 }

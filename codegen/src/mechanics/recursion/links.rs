@@ -1,16 +1,16 @@
 //! The tree of links. A link is a set of axes with an origin; each moves relative to its carrier by a rotation
 //! about the origin or by a translation of the origin along its axes.
 
-use appell_spec::mechanism::{FrameId, GROUND, Mechanism, ORIGIN, PointId};
+use appell_spec::mechanism::{FrameId, GROUND, ORIGIN, PointId};
 use rustc_hash::FxHashMap;
 
 use super::super::algebra::Algebra;
+use super::super::expressions::Setting;
 use super::super::kinematics::Kinematics;
 use super::super::rotation::Rotation;
 use super::super::symbols::ids;
-use super::super::time::TimeDerivative;
-use crate::symbolic::vector::{self, Vec3};
-use crate::symbolic::{Expr, SymbolId};
+use crate::symbolic::vector::{self, Mat3, Vec3};
+use crate::symbolic::{Expr, Graph, SymbolId};
 
 /// Axes with an origin.
 #[derive(Debug, Clone)]
@@ -48,6 +48,40 @@ pub(super) enum Step {
     },
 }
 
+impl Step {
+    /// The turns from the axes of the carrier to those of the link.
+    pub(super) fn turns(&self) -> &[Rotation] {
+        match self {
+            Self::Rotation { turns, .. } => turns,
+            Self::Shift { .. } => &[],
+        }
+    }
+
+    /// A vector of the carrier in the axes of the link.
+    pub(super) fn inward(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        (self.turns().iter()).fold(v, |v, turn| turn.in_child(graph, v))
+    }
+
+    /// A vector of the link in the axes of the carrier.
+    pub(super) fn outward(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        (self.turns().iter().rev()).fold(v, |v, turn| turn.in_parent(graph, v))
+    }
+
+    /// A tensor of the link in the axes of the carrier.
+    pub(super) fn tensor_outward(&self, graph: &mut Graph, tensor: &Mat3) -> Mat3 {
+        let turns = self.turns().iter().rev();
+        turns.fold(*tensor, |t, turn| turn.tensor_in_parent(graph, &t))
+    }
+
+    /// A column as angular and linear acceleration.
+    pub(super) fn directed(&self, column: Vec3) -> (Vec3, Vec3) {
+        match self {
+            Self::Rotation { .. } => (column, vector::ZERO),
+            Self::Shift { .. } => (vector::ZERO, column),
+        }
+    }
+}
+
 /// A point fixed in a link, by its position from the origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
@@ -81,11 +115,12 @@ impl Links {
     /// The tree of a mechanism; `None` if a body hangs on a frame that does not carry its axes.
     pub(super) fn new(
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
+        setting: Setting<'_>,
         kinematics: &Kinematics,
-        time: &TimeDerivative<'_>,
     ) -> Option<Self> {
-        let symbols = time.symbols;
+        let Setting {
+            mechanism, symbols, ..
+        } = setting;
         let signals = symbols.signals.iter().flatten().copied();
         let changing: Vec<Expr> = (symbols.coordinates.iter().copied())
             .chain(signals)
@@ -94,9 +129,8 @@ impl Links {
         let mut planting = Planting {
             changing: ids(&algebra.graph, &changing),
             algebra,
-            mechanism,
+            setting,
             kinematics,
-            time,
             links: Vec::new(),
             known: FxHashMap::default(),
         };
@@ -129,11 +163,10 @@ impl Links {
 }
 
 /// The tree under construction.
-struct Planting<'a, 'b> {
+struct Planting<'a> {
     algebra: &'a mut Algebra,
-    mechanism: &'a Mechanism,
+    setting: Setting<'a>,
     kinematics: &'a Kinematics,
-    time: &'a TimeDerivative<'b>,
     /// Symbols on which a position may depend.
     changing: Vec<SymbolId>,
     links: Vec<Link>,
@@ -141,7 +174,7 @@ struct Planting<'a, 'b> {
     known: FxHashMap<(FrameId, PointId), Place>,
 }
 
-impl Planting<'_, '_> {
+impl Planting<'_> {
     /// The frame in whose axes the position of a point is given.
     fn axes_of(&self, point: PointId) -> FrameId {
         self.kinematics.offset(point).frame
@@ -160,17 +193,15 @@ impl Planting<'_, '_> {
                 break known;
             }
             way.push(at);
-            at = self.mechanism.points[at].from?;
+            at = self.setting.mechanism.points[at].from?;
         };
         let mut place = start;
         for &point in way.iter().rev() {
             let offset = self.kinematics.offset(point).v;
             place.arm = self.algebra.graph.add3(place.arm, offset);
-            if offset
-                .iter()
-                .any(|&c| self.algebra.graph.mentions(c, &self.changing))
-            {
-                let link = self.shifted(place, &self.mechanism.points[point].name.clone());
+            let graph = &self.algebra.graph;
+            if offset.iter().any(|&c| graph.mentions(c, &self.changing)) {
+                let link = self.shifted(place, &self.setting.mechanism.points[point].name.clone());
                 place = Place::at(Some(link));
                 self.known.insert((axes, point), place);
             }
@@ -197,7 +228,7 @@ impl Planting<'_, '_> {
             self.place(origin)?
         };
         if start.arm != vector::ZERO {
-            let name = self.mechanism.points[origin].name.clone();
+            let name = self.setting.mechanism.points[origin].name.clone();
             start = Place::at(Some(self.shifted(start, &name)));
         }
         self.known.insert((from, origin), start);
@@ -254,44 +285,34 @@ impl Planting<'_, '_> {
         turns: Vec<Rotation>,
         w: Vec3,
     ) -> usize {
-        let w_dot = self.time.of3(self.algebra, w);
+        let w_dot = self.setting.rate3(self.algebra, w);
         let w_dot = self.algebra.shortest3(w_dot);
-        let columns = self.columns(w);
-        self.push(Link {
-            name: self.mechanism.frames[frame].name.clone(),
-            parent,
-            step: Step::Rotation { turns, w, w_dot },
-            columns,
-        })
+        let name = &self.setting.mechanism.frames[frame].name;
+        self.push(name, parent, Step::Rotation { turns, w, w_dot }, w)
     }
 
     fn shifted(&mut self, place: Place, name: &str) -> usize {
         let d = place.arm;
-        let d_dot = self.time.of3(self.algebra, d);
-        let d_ddot = self.time.of3(self.algebra, d_dot);
-        let columns = self.columns(d_dot);
-        self.push(Link {
-            name: name.to_owned(),
-            parent: place.link,
-            step: Step::Shift { d, d_dot, d_ddot },
-            columns,
-        })
+        let d_dot = self.setting.rate3(self.algebra, d);
+        let d_ddot = self.setting.rate3(self.algebra, d_dot);
+        self.push(name, place.link, Step::Shift { d, d_dot, d_ddot }, d_dot)
     }
 
-    fn push(&mut self, link: Link) -> usize {
-        self.links.push(link);
-        self.links.len() - 1
-    }
-
-    /// The nonzero partial velocities.
-    fn columns(&mut self, velocity: Vec3) -> Vec<(usize, Vec3)> {
+    /// Adds a link with the partial velocities of `velocity`, that of its step.
+    fn push(&mut self, name: &str, parent: Option<usize>, step: Step, velocity: Vec3) -> usize {
         let mut columns = Vec::new();
-        for (place, &speed) in self.time.symbols.speeds.iter().enumerate() {
-            let partial = velocity.map(|c| self.algebra.derivative(c, speed));
+        for (place, &speed) in self.setting.symbols.speeds.iter().enumerate() {
+            let partial = self.algebra.derivative3(velocity, speed);
             if partial != vector::ZERO {
                 columns.push((place, partial));
             }
         }
-        columns
+        self.links.push(Link {
+            name: name.to_owned(),
+            parent,
+            step,
+            columns,
+        });
+        self.links.len() - 1
     }
 }

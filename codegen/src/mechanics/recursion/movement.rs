@@ -18,16 +18,6 @@ pub(super) struct LinkMotion {
     pub(super) turning: Mat3,
 }
 
-/// Inputs of the outward recursion.
-pub(super) struct Driven<'a> {
-    /// Acceleration of the ground.
-    pub(super) ground: Vec3,
-    /// ω̇; `None` if all vanish.
-    pub(super) accelerations: Option<&'a [Expr]>,
-    /// Distinguishes this motion in names.
-    pub(super) kind: &'a str,
-}
-
 impl LinkMotion {
     /// A motion without rotation.
     pub(super) fn at_rest(a: Vec3) -> Self {
@@ -36,16 +26,6 @@ impl LinkMotion {
             alpha: vector::ZERO,
             a,
             turning: [vector::ZERO; 3],
-        }
-    }
-
-    fn new(graph: &mut Graph, w: Vec3, alpha: Vec3, a: Vec3) -> Self {
-        let turning = turning(graph, w, alpha);
-        Self {
-            w,
-            alpha,
-            a,
-            turning,
         }
     }
 }
@@ -67,29 +47,33 @@ fn turning(graph: &mut Graph, w: Vec3, alpha: Vec3) -> Mat3 {
 }
 
 impl Links {
-    /// The motions of all links.
-    pub(super) fn motions(&self, algebra: &mut Algebra, driven: &Driven<'_>) -> Vec<LinkMotion> {
-        let at_rest = LinkMotion::at_rest(driven.ground);
+    /// The motions of all links for an acceleration of the ground and ω̇, none if all vanish. `kind` distinguishes
+    /// this motion in names.
+    pub(super) fn motions(
+        &self,
+        algebra: &mut Algebra,
+        ground: Vec3,
+        accelerations: &[Expr],
+        kind: &str,
+    ) -> Vec<LinkMotion> {
+        let at_rest = LinkMotion::at_rest(ground);
         let mut motions: Vec<LinkMotion> = Vec::with_capacity(self.all.len());
         for link in &self.all {
             let carrier = link.parent.map_or(&at_rest, |parent| &motions[parent]);
-            let motion = link.moved(algebra, carrier, driven);
+            let motion = link.moved(algebra, carrier, accelerations, kind);
             motions.push(motion);
         }
         motions
     }
-}
 
-impl Links {
     /// The acceleration of the ground in the axes of all links at rest.
     pub(super) fn still(&self, algebra: &mut Algebra, ground: Vec3) -> Vec<Vec3> {
         let mut all: Vec<Vec3> = Vec::with_capacity(self.all.len());
         for link in &self.all {
             let carried = link.parent.map_or(ground, |parent| all[parent]);
             all.push(match &link.step {
-                Step::Rotation { turns, .. } => {
-                    let graph = &mut algebra.graph;
-                    let a = (turns.iter()).fold(carried, |a, turn| turn.in_child(graph, a));
+                Step::Rotation { .. } => {
+                    let a = link.step.inward(&mut algebra.graph, carried);
                     named3(algebra, &format!("g_{}", link.name), a)
                 }
                 Step::Shift { .. } => carried,
@@ -100,10 +84,10 @@ impl Links {
 }
 
 impl Link {
-    /// The relative velocity of the step, or its rate: `Σ column · speed`.
+    /// The relative velocity of the step, or its rate: `Σ column · speed`; zero without speeds.
     pub(super) fn along(&self, graph: &mut Graph, speeds: &[Expr]) -> Vec3 {
         let mut sum = vector::ZERO;
-        for &(speed, column) in &self.columns {
+        for &(speed, column) in self.columns.iter().filter(|_| !speeds.is_empty()) {
             let part = graph.scale3(speeds[speed], column);
             sum = graph.add3(sum, part);
         }
@@ -114,32 +98,33 @@ impl Link {
         &self,
         algebra: &mut Algebra,
         carrier: &LinkMotion,
-        driven: &Driven<'_>,
+        accelerations: &[Expr],
+        kind: &str,
     ) -> LinkMotion {
-        let driving = driven.accelerations.map_or(vector::ZERO, |accelerations| {
-            self.along(&mut algebra.graph, accelerations)
-        });
-        let (name, kind) = (&self.name, driven.kind);
-        match &self.step {
-            Step::Rotation { turns, w, w_dot } => {
+        let driving = self.along(&mut algebra.graph, accelerations);
+        let (name, step) = (&self.name, &self.step);
+        match step {
+            Step::Rotation { w, w_dot, .. } => {
                 let graph = &mut algebra.graph;
-                let inward = |graph: &mut Graph, v: Vec3| {
-                    turns.iter().fold(v, |v, turn| turn.in_child(graph, v))
-                };
-                let carried = inward(graph, carrier.w);
+                let carried = step.inward(graph, carrier.w);
                 let sum = graph.add3(carried, *w);
-                let own = algebra.shared3(&format!("w_{name}"), sum);
+                let turned = algebra.shared3(&format!("w_{name}"), sum);
                 let graph = &mut algebra.graph;
                 // α = Rᵀ α_carrier + ω × w + ẇ
-                let mut alpha = inward(graph, carrier.alpha);
-                let change = graph.cross(own, *w);
+                let mut alpha = step.inward(graph, carrier.alpha);
+                let change = graph.cross(turned, *w);
                 for part in [change, *w_dot, driving] {
                     alpha = graph.add3(alpha, part);
                 }
-                let a = inward(graph, carrier.a);
+                let a = step.inward(graph, carrier.a);
                 let alpha = named3(algebra, &format!("alpha{kind}_{name}"), alpha);
                 let a = named3(algebra, &format!("a{kind}_{name}"), a);
-                LinkMotion::new(&mut algebra.graph, own, alpha, a)
+                LinkMotion {
+                    w: turned,
+                    alpha,
+                    a,
+                    turning: turning(&mut algebra.graph, turned, alpha),
+                }
             }
             Step::Shift { d, d_dot, d_ddot } => {
                 // a = a_carrier + (α× + ω× ω×) d + 2 ω × ḋ + d̈

@@ -14,10 +14,10 @@
 
 use super::super::algebra::{Algebra, name_of, named3};
 use super::super::rotation::Rotation;
-use super::inertia::{Inertia, Wrench, with_products};
+use super::inertia::{Inertia, Wrench, named_tensor, plus, with_products};
 use super::links::{Link, Links, Step};
 use super::movement::LinkMotion;
-use crate::symbolic::vector::{self, Mat3, Vec3};
+use crate::symbolic::vector::{self, Mat3, Vec3, transpose};
 use crate::symbolic::{Expr, Graph};
 
 /// Momentum and inertia rates of a link with its descendants, about its origin, in its axes.
@@ -73,17 +73,9 @@ impl Flow {
 
     /// For a rigid body fixed in the axes: `ω × h`, `ω× I − I ω×`, `I ω`.
     fn of_rigid(graph: &mut Graph, inertia: &Inertia, w: Vec3) -> Self {
-        let mut half = [vector::ZERO; 3];
-        for (i, row) in half.iter_mut().enumerate() {
-            // Column i of ω× I; the tensor is symmetric.
-            *row = graph.cross(w, inertia.tensor[i]);
-        }
-        let mut tensor = half;
-        for i in 0..3 {
-            for j in 0..3 {
-                tensor[i][j] = graph.add(half[i][j], half[j][i]);
-            }
-        }
+        // Column i of ω× I; the tensor is symmetric.
+        let half = inertia.tensor.map(|column| graph.cross(w, column));
+        let tensor = plus(graph, &half, &transpose(&half));
         Self {
             moment: graph.cross(w, inertia.moment),
             tensor,
@@ -92,10 +84,7 @@ impl Flow {
     }
 
     fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
-        let mut tensor = self.tensor;
-        for (row, other) in tensor.iter_mut().zip(other.tensor) {
-            *row = graph.add3(*row, other);
-        }
+        let tensor = plus(graph, &self.tensor, &other.tensor);
         Self {
             moment: graph.add3(self.moment, other.moment),
             tensor,
@@ -129,13 +118,7 @@ impl Flow {
     }
 
     fn named(&self, algebra: &mut Algebra, link: &str) -> Self {
-        let mut tensor = self.tensor;
-        for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
-            let axes = ['x', 'y', 'z'];
-            let name = format!("I_dot_{link}_{}{}", axes[i], axes[j]);
-            tensor[i][j] = algebra.graph.name(&name, self.tensor[i][j]);
-            tensor[j][i] = tensor[i][j];
-        }
+        let tensor = named_tensor(algebra, &format!("I_dot_{link}"), &self.tensor);
         Self {
             moment: named3(algebra, &format!("h_dot_{link}"), self.moment),
             tensor,
@@ -233,7 +216,7 @@ impl Differentiable {
             }
             let wrench = self.wrenches[place];
             for &(speed, column) in &link.columns {
-                let turned = derivative3(algebra, column, z);
+                let turned = algebra.derivative3(column, z);
                 parts[speed].push(link.work(&mut algebra.graph, turned, wrench));
             }
             let (composite, flow) = (&self.composites[place], &self.flows[place]);
@@ -268,14 +251,14 @@ impl Differentiable {
         // ω̇ is fixed.
         let mut driving = vector::ZERO;
         for &(speed, column) in &link.columns {
-            let by = derivative3(algebra, column, z);
+            let by = algebra.derivative3(column, z);
             let part = algebra.graph.scale3(accelerations[speed], by);
             driving = algebra.graph.add3(driving, part);
         }
         match &link.step {
             Step::Rotation { turns, w, w_dot } => {
-                let by_w = derivative3(algebra, *w, z);
-                let by_rate = derivative3(algebra, *w_dot, z);
+                let by_w = algebra.derivative3(*w, z);
+                let by_rate = algebra.derivative3(*w_dot, z);
                 let axis = axis(algebra, turns, z);
                 let still = [by_w, by_rate, driving].iter().all(|v| *v == vector::ZERO);
                 if still && axis == Some(vector::ZERO) {
@@ -326,7 +309,7 @@ impl Differentiable {
             }
             Step::Shift { d, d_dot, d_ddot } => {
                 let [by_d, by_rate, by_second] =
-                    [*d, *d_dot, *d_ddot].map(|v| derivative3(algebra, v, z));
+                    [*d, *d_dot, *d_ddot].map(|v| algebra.derivative3(v, z));
                 let graph = &mut algebra.graph;
                 let mut a = graph.mat_vec(&motion.turning, by_d);
                 let coriolis = graph.cross(motion.w, by_rate);
@@ -379,9 +362,9 @@ impl Links {
         for (place, link) in self.all.iter().enumerate() {
             for &(speed, column) in &link.columns {
                 let name = &self.speeds[speed];
-                let wrench = self.resistance(algebra, place, column, &composites[place]);
-                let flow = &flows[place];
-                let graph = &mut algebra.graph;
+                let (graph, flow) = (&mut algebra.graph, &flows[place]);
+                let (alpha, a) = link.step.directed(column);
+                let wrench = composites[place].resists(graph, alpha, a);
                 let mut answer = Answer::of_column(graph, &link.step, column, wrench, flow);
                 let mut at = Some(place);
                 while let Some(here) = at {
@@ -402,16 +385,18 @@ impl Links {
 }
 
 impl Link {
-    /// Velocity of the origin relative to the carrier's, in axes that do not rotate.
-    fn leaving(&self, graph: &mut Graph, motions: &[LinkMotion]) -> Vec3 {
-        match (&self.step, self.parent) {
+    /// Velocity of the origin relative to the carrier's, in axes that do not rotate, named.
+    fn leaving(&self, algebra: &mut Algebra, motions: &[LinkMotion]) -> Vec3 {
+        let graph = &mut algebra.graph;
+        let u = match (&self.step, self.parent) {
             (Step::Shift { d, d_dot, .. }, Some(parent)) => {
                 let turning = graph.cross(motions[parent].w, *d);
                 graph.add3(turning, *d_dot)
             }
             (Step::Shift { d_dot, .. }, None) => *d_dot,
             (Step::Rotation { .. }, _) => vector::ZERO,
-        }
+        };
+        named3(algebra, &format!("u_{}", self.name), u)
     }
 
     fn flow_in_carrier(
@@ -421,25 +406,20 @@ impl Link {
         composite: &Inertia,
         motions: &[LinkMotion],
     ) -> Flow {
-        let graph = &mut algebra.graph;
-        match &self.step {
-            Step::Rotation { turns, .. } => {
-                let mut flow = flow.clone();
-                for turn in turns.iter().rev() {
-                    flow = Flow {
-                        moment: turn.in_parent(graph, flow.moment),
-                        tensor: turn.tensor_in_parent(graph, &flow.tensor),
-                        momentum: turn.in_parent(graph, flow.momentum),
-                    };
-                }
-                flow
-            }
-            Step::Shift { d, .. } => {
-                let u = self.leaving(graph, motions);
-                let u = named3(algebra, &format!("u_{}", self.name), u);
-                flow.shifted(&mut algebra.graph, composite, *d, u)
-            }
+        if let Step::Shift { d, .. } = self.step {
+            let u = self.leaving(algebra, motions);
+            return flow.shifted(&mut algebra.graph, composite, d, u);
         }
+        let graph = &mut algebra.graph;
+        let mut flow = flow.clone();
+        for turn in self.step.turns().iter().rev() {
+            flow = Flow {
+                moment: turn.in_parent(graph, flow.moment),
+                tensor: turn.tensor_in_parent(graph, &flow.tensor),
+                momentum: turn.in_parent(graph, flow.momentum),
+            };
+        }
+        flow
     }
 
     fn answer_in_carrier(
@@ -448,21 +428,15 @@ impl Link {
         answer: &Answer,
         motions: &[LinkMotion],
     ) -> Answer {
-        let graph = &mut algebra.graph;
-        let wrench = self.on_carrier(graph, answer.wrench);
-        let w = match &self.step {
-            Step::Rotation { turns, .. } => {
-                (turns.iter().rev()).fold(answer.w, |v, turn| turn.in_parent(graph, v))
-            }
-            Step::Shift { .. } => {
-                let u = self.leaving(graph, motions);
-                let u = named3(algebra, &format!("u_{}", self.name), u);
-                let graph = &mut algebra.graph;
-                let coriolis = graph.cross(u, answer.wrench.f);
-                let coriolis = graph.add3(coriolis, coriolis);
-                graph.add3(answer.w, coriolis)
-            }
-        };
+        let wrench = self.on_carrier(&mut algebra.graph, answer.wrench);
+        let mut w = self.step.outward(&mut algebra.graph, answer.w);
+        if let Step::Shift { .. } = self.step {
+            let u = self.leaving(algebra, motions);
+            let graph = &mut algebra.graph;
+            let coriolis = graph.cross(u, answer.wrench.f);
+            let coriolis = graph.add3(coriolis, coriolis);
+            w = graph.add3(w, coriolis);
+        }
         Answer { wrench, w }
     }
 
@@ -494,7 +468,7 @@ impl Link {
                 carried.plus(&mut algebra.graph, turned)
             }
             Step::Shift { d, .. } => {
-                let by_d = derivative3(algebra, *d, z);
+                let by_d = algebra.derivative3(*d, z);
                 let graph = &mut algebra.graph;
                 let carried = self.on_carrier(graph, change);
                 let n = graph.cross(by_d, own.f);
@@ -502,10 +476,6 @@ impl Link {
             }
         }
     }
-}
-
-fn derivative3(algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
-    v.map(|c| algebra.derivative(c, z))
 }
 
 /// The axis about which a variable rotates the axes after the turns, in components there; `None` if the

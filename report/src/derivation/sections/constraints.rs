@@ -1,5 +1,6 @@
 //! Constraints, pseudo-velocities, the generalised velocities that solve both and where they do; constraint forces.
 
+use appell_codegen::mechanics::expressions::Setting;
 use appell_codegen::mechanics::finding::Outcome;
 use appell_codegen::mechanics::reactions::reactions;
 use appell_codegen::mechanics::{parameter_ranges, row};
@@ -235,8 +236,7 @@ pub(super) fn forces(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
     let d = &mut *w.derivation;
     let forces = reactions(
         &mut d.algebra,
-        w.mechanism,
-        &d.symbols,
+        Setting::free(w.mechanism, &d.symbols),
         &d.constraints,
         &d.velocities.violating,
         &d.bodies,

@@ -1,7 +1,7 @@
 //! Loads: vector, frame, point of application, reaction, virtual power; the pseudo-forces of all of them.
 
+use appell_codegen::mechanics::expressions::Setting;
 use appell_codegen::mechanics::loads::{AppliedLoad, generalized_forces};
-use appell_codegen::mechanics::time::TimeDerivative;
 use appell_codegen::symbolic::{Expr, Graph};
 use appell_spec::expr::{Expr as Spec, ExprKind, Quantity};
 use appell_spec::mechanism::{
@@ -180,9 +180,8 @@ fn spring_damper(
         Connection::Along(own) => {
             let place = lowered(w, own);
             let derivation = &mut *w.derivation;
-            let symbols = &derivation.symbols;
-            let rates = &symbols.rates;
-            let rate = TimeDerivative { symbols, rates }.of(&mut derivation.algebra, place);
+            let free = Setting::free(w.mechanism, &derivation.symbols);
+            let rate = free.rate(&mut derivation.algebra, place);
             let mut force = Vec::new();
             if let Some(Spring { stiffness, relaxed }) = spring {
                 let stretch = difference(w, place, relaxed);

@@ -5,7 +5,6 @@ use appell_spec::mechanism::{FrameId, GROUND, Inertia, Turn};
 use super::super::lexicon::AXES;
 use super::super::{Block, Chain, Letter, Math, Row, Section, Span, Writer};
 use super::phrases::{equality, headed, math, sentence, table, words};
-use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::symbolic::{Expr, Graph};
 
 /// Frames, points, bodies.
@@ -44,11 +43,8 @@ pub(super) fn lowered(w: &mut Writer<'_>, expr: &appell_spec::expr::Expr) -> Exp
 /// An expression of the spec, if it does not divide by zero.
 pub(super) fn try_lowered(w: &mut Writer<'_>, expr: &appell_spec::expr::Expr) -> Option<Expr> {
     let derivation = &mut *w.derivation;
-    let lowering = Lowering {
-        symbols: &derivation.symbols,
-        rates: &derivation.symbols.rates,
-    };
-    lowering.lower(&mut derivation.algebra.graph, expr).ok()
+    let graph = &mut derivation.algebra.graph;
+    derivation.symbols.lower(graph, expr).ok()
 }
 
 fn chain(w: &mut Writer<'_>, leaf: FrameId) -> Block {

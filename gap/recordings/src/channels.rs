@@ -17,7 +17,7 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use crate::channel::Channel;
-use crate::column::{CHANNEL_KEYS, Line, channel};
+use crate::column::{Line, channel, channel_keys};
 use crate::fields::{Fields, Value};
 use crate::named::Named;
 use crate::time::{self, Stated, TIME, may_be_time};
@@ -87,8 +87,8 @@ fn clock<'e>(
 ) -> Option<(&'e str, &'e Value<'e>)> {
     let is_bare = |value: &Value<'_>| {
         let table = value.get_ref().as_table();
-        let has = |key: &&str| table.is_some_and(|table| table.get(*key).is_some());
-        !CHANNEL_KEYS.iter().chain(&["time"]).any(has)
+        let has = |key: &str| table.is_some_and(|table| table.get(key).is_some());
+        !channel_keys().chain(["time"]).any(has)
     };
     let lines = || {
         entries
@@ -138,8 +138,7 @@ fn unit_of_times(fields: &mut Fields<'_>, name: &str, value: &Value<'_>) -> Opti
         fields.wrong_type(value, "a table such as { unit = \"ms\" }");
         return None;
     };
-    let is_channel = |key: &&str| table.get(*key).is_some();
-    if CHANNEL_KEYS.iter().any(is_channel) {
+    if channel_keys().any(|key| table.get(key).is_some()) {
         let message = format!("`{}` is the time, not a channel", shown(name));
         let help = "remove the line, or state the unit of the times alone: { unit = \"ms\" }";
         fields.tell(Code::ReservedName, message, value.span(), help);

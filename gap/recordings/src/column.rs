@@ -17,25 +17,10 @@ use crate::channel::{Channel, Measured, Role};
 use crate::fields::{Fields, Tolerance, Value};
 use crate::named::Named;
 
-/// Keys of a channel that the times do not have.
-pub(crate) const CHANNEL_KEYS: [&str; 12] = [
-    "measures",
-    "input",
-    "noise_std",
-    "scale_std",
-    "gain_std",
-    "unit_checked",
-    "reversed",
-    "interpolation",
-    "counts_per_turn",
-    "gear",
-    "scale",
-    "zero",
-];
 /// Largest size of one in a column, in SI.
 const MOST_FACTOR: f64 = 1e30;
 /// Keys of a line.
-const LINE_KEYS: [&str; 14] = [
+const KEYS: [&str; 14] = [
     "measures",
     "input",
     "unit",
@@ -51,6 +36,14 @@ const LINE_KEYS: [&str; 14] = [
     "scale",
     "zero",
 ];
+/// Keys of a line that the one of the times has as well.
+const OF_TIMES: [&str; 2] = ["unit", "time"];
+
+/// Keys of a channel that the times do not have.
+pub(crate) fn channel_keys() -> impl Iterator<Item = &'static str> {
+    KEYS.into_iter().filter(|key| !OF_TIMES.contains(key))
+}
+
 /// How an input may run between rows.
 const INTERPOLATIONS: [(&str, Interpolation); 3] = [
     ("hold", Interpolation::Hold),
@@ -99,7 +92,7 @@ pub(crate) fn channel(
         fields.wrong_type(value, wanted);
         return None;
     };
-    fields.only(table, &LINE_KEYS);
+    fields.only(table, &KEYS);
     fields.flag(table, "time");
     let measures = line.name(fields, table, "measures");
     let input = line.name(fields, table, "input");
@@ -356,5 +349,5 @@ fn commanded(fields: &mut Fields<'_>, name: &str, at: Span, named: Named<'_>) ->
     if found.is_none() {
         fields.unknown("input", name, at, names());
     }
-    found.map(Role::Input)
+    found
 }

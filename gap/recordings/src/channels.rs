@@ -38,13 +38,8 @@ pub(crate) fn channels(
     columns: Columns<'_>,
 ) -> (Stated, Vec<Channel>) {
     let rate = rate(fields, table);
-    let Some(table) = fields.section(table, "channels") else {
-        if table.get("channels").is_none() {
-            let message = "the section `[channels]` is missing";
-            let help =
-                "write a line for each column, such as x = { measures = \"x\", unit = \"m\" }";
-            fields.tell(Code::MissingSection, message, 0..0, help);
-        }
+    let help = "write a line for each column, such as x = { measures = \"x\", unit = \"m\" }";
+    let Some(table) = fields.needed_section(table, "channels", help) else {
         return (Stated::default(), Vec::new());
     };
     let mut entries: Vec<_> = table.iter().collect();
@@ -134,10 +129,7 @@ fn is_time(value: &Value<'_>) -> bool {
 
 /// The unit of the times in their line.
 fn unit_of_times(fields: &mut Fields<'_>, name: &str, value: &Value<'_>) -> Option<Unit> {
-    let Some(table) = value.get_ref().as_table() else {
-        fields.wrong_type(value, "a table such as { unit = \"ms\" }");
-        return None;
-    };
+    let table = fields.table(value, "a table such as { unit = \"ms\" }")?;
     if channel_keys().any(|key| table.get(key).is_some()) {
         let message = format!("`{}` is the time, not a channel", shown(name));
         let help = "remove the line, or state the unit of the times alone: { unit = \"ms\" }";

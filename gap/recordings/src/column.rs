@@ -87,11 +87,8 @@ pub(crate) fn channel(
         column, value, at, ..
     } = line;
     let at = at.clone();
-    let Some(table) = value.get_ref().as_table() else {
-        let wanted = "a table such as { measures = \"theta\", unit = \"rad\" }";
-        fields.wrong_type(value, wanted);
-        return None;
-    };
+    let wanted = "a table such as { measures = \"theta\", unit = \"rad\" }";
+    let table = fields.table(value, wanted)?;
     fields.only(table, &KEYS);
     fields.flag(table, "time");
     let measures = line.name(fields, table, "measures");

@@ -72,6 +72,9 @@ const KEYS: &[&str] = &[
     differences::SECTION,
 ];
 
+/// Help where the mechanism is not known.
+const NAME_ONE: &str = "name a shipped mechanism, or the path of a spec relative to this file";
+
 /// Reads a description; `instead` replaces the mechanism that it names. `columns` are those of a run.
 pub(crate) fn read(
     path: &Path,
@@ -92,9 +95,7 @@ pub(crate) fn read(
         (Some(spec), _) => Some(spec),
         (None, Some((name, at))) => find(&name, at, path, library, &mut fields)?,
         (None, None) => {
-            let message = "the key `mechanism` is missing";
-            let help = "name a shipped mechanism, or the path of a spec relative to this file";
-            fields.tell(Code::MissingKey, message, 0..0, help);
+            fields.missing("mechanism", 0..0, NAME_ONE);
             None
         }
     };
@@ -186,9 +187,7 @@ fn find(
         }));
     }
     let names = || library.iter().map(|(name, _)| *name);
-    let help = did_you_mean(name, names(), || {
-        "name a shipped mechanism, or the path of a spec relative to this file".to_owned()
-    });
+    let help = did_you_mean(name, names(), || NAME_ONE.to_owned());
     let message = format!("there is no mechanism and no file `{}`", shown(name));
     fields.tell(Code::UnknownReference, message, at, &help);
     Ok(None)
@@ -196,12 +195,8 @@ fn find(
 
 /// The files of the runs, those to fit first.
 fn runs(fields: &mut Fields<'_>, table: &DeTable<'_>, folder: &Path) -> Vec<(String, Part)> {
-    let Some(table) = fields.section(table, "runs") else {
-        if table.get("runs").is_none() {
-            let message = "the section `[runs]` is missing";
-            let help = "write fit = [\"run1.csv\"] and test = [\"run2.csv\"]";
-            fields.tell(Code::MissingSection, message, 0..0, help);
-        }
+    let help = "write fit = [\"run1.csv\"] and test = [\"run2.csv\"]";
+    let Some(table) = fields.needed_section(table, "runs", help) else {
         return Vec::new();
     };
     fields.only(table, &["fit", "test"]);

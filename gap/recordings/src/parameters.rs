@@ -61,11 +61,8 @@ pub(crate) fn parameter(
     stated: Option<Parameter>,
     one: f64,
 ) -> Option<Parameter> {
-    let Some(table) = value.get_ref().as_table() else {
-        let wanted = "a table such as { value = 1.2, unit = \"kg\", std = 0.03 }";
-        fields.wrong_type(value, wanted);
-        return None;
-    };
+    let wanted = "a table such as { value = 1.2, unit = \"kg\", std = 0.03 }";
+    let table = fields.table(value, wanted)?;
     fields.only(table, &["value", "unit", "std"]);
     let is_factor = stated.is_some() && own.label.unit.dimension == Dimension::NONE;
     let quantity = (own.label.name.as_str(), &own.label.unit);
@@ -82,8 +79,7 @@ pub(crate) fn parameter(
         }
         (None, Some(stated)) => stated.value,
         (None, None) => {
-            let message = "the key `value` is missing";
-            fields.tell(Code::MissingKey, message, value.span(), "");
+            fields.missing("value", value.span(), "");
             return None;
         }
     };

@@ -28,9 +28,7 @@ impl<'r, 't> Reader<'r, 't> {
             centre: String::new(),
         }
     }
-}
 
-impl Reader<'_, '_> {
     pub(super) fn skeleton(&mut self, table: &DeTable<'_>) -> Option<Skeleton> {
         self.fields.only(table, KEYS);
         let description = self.fields.string(table, "description");
@@ -53,20 +51,6 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// A section that has to be there.
-    fn section<'a, 'd>(
-        &mut self,
-        table: &'a DeTable<'d>,
-        name: &str,
-        help: &str,
-    ) -> Option<&'a DeTable<'d>> {
-        if table.get(name).is_none() {
-            let message = format!("the section `[{name}]` is missing");
-            self.fields.tell(Code::MissingSection, message, 0..0, help);
-        }
-        self.fields.section(table, name)
-    }
-
     fn required_text(
         &mut self,
         table: &DeTable<'_>,
@@ -74,15 +58,14 @@ impl Reader<'_, '_> {
         help: &str,
     ) -> Option<(String, Span)> {
         if table.get(key).is_none() {
-            let message = format!("the key `{key}` is missing");
-            self.fields.tell(Code::MissingKey, message, 0..0, help);
+            self.fields.missing(key, 0..0, help);
         }
         self.fields.string(table, key)
     }
 
     fn columns(&mut self, table: &DeTable<'_>) -> Option<Columns> {
         let help = "write position and angles, three columns each, and their units";
-        let table = self.section(table, "columns", help)?;
+        let table = self.fields.needed_section(table, "columns", help)?;
         let keys = ["position", "angles", "length", "angle"];
         self.fields.only(table, &keys);
         let length = self.scale(table, "length", "m")?;
@@ -143,7 +126,7 @@ impl Reader<'_, '_> {
 
     fn bodies(&mut self, table: &DeTable<'_>) {
         let help = "name each rigid body, such as E = \"top of the vehicle\"";
-        let Some(table) = self.section(table, "bodies", help) else {
+        let Some(table) = self.fields.needed_section(table, "bodies", help) else {
             return;
         };
         for (name, _) in in_order(table) {
@@ -182,7 +165,7 @@ impl Reader<'_, '_> {
 
     fn point(&mut self, name: &str, value: &Value<'_>) -> Option<Point> {
         let wanted = "a table such as { body = \"E\", offset = [0, 0, -0.45], unit = \"m\" }";
-        let table = self.table(value, wanted)?;
+        let table = self.fields.table(value, wanted)?;
         self.fields.only(table, &["body", "offset", "unit"]);
         let body = self.fields.string(table, "body");
         let (body, at) = self.present(body, "body", value)?;
@@ -206,7 +189,7 @@ impl Reader<'_, '_> {
 
     fn rider(&mut self, table: &DeTable<'_>) -> Option<Rider> {
         let help = "write mass, table and the name of the centre of mass";
-        let rider = self.section(table, "rider", help)?;
+        let rider = self.fields.needed_section(table, "rider", help)?;
         self.fields.only(rider, &["mass", "table", "name"]);
         let (centre, at) = self.required_text(rider, "name", "write name = \"G\"")?;
         if self.points.iter().any(|point| point.name == centre) {
@@ -234,11 +217,12 @@ impl Reader<'_, '_> {
     fn mass(&mut self, rider: &DeTable<'_>) -> Option<f64> {
         let help = "write mass = { value = 65, unit = \"kg\" }";
         let Some(value) = rider.get("mass") else {
-            let message = "the key `mass` is missing";
-            self.fields.tell(Code::MissingKey, message, 0..0, help);
+            self.fields.missing("mass", 0..0, help);
             return None;
         };
-        let table = self.table(value, "a table such as { value = 65, unit = \"kg\" }")?;
+        let table = self
+            .fields
+            .table(value, "a table such as { value = 65, unit = \"kg\" }")?;
         self.fields.only(table, &["value", "unit"]);
         let scale = self.scale(table, "unit", "kg")?;
         let number = table.get("value");
@@ -262,7 +246,7 @@ impl Reader<'_, '_> {
     ) -> Option<Vec<Segment>> {
         let help =
             "write a line for each segment, such as { part = \"head\", from = \"H\", to = \"N\" }";
-        let table = self.section(table, "segments", help)?;
+        let table = self.fields.needed_section(table, "segments", help)?;
         let mut segments = Vec::new();
         for (name, value) in in_order(table) {
             segments.extend(self.segment(&name, value, anthropometry));
@@ -287,7 +271,7 @@ impl Reader<'_, '_> {
         anthropometry: &'static Anthropometry,
     ) -> Option<Segment> {
         let wanted = "a table such as { part = \"forearm\", from = \"UAR\", to = \"LAR\" }";
-        let table = self.table(value, wanted)?;
+        let table = self.fields.table(value, wanted)?;
         self.fields.only(table, &["part", "from", "to"]);
         let part = self.fields.string(table, "part");
         let (part, at) = self.present(part, "part", value)?;
@@ -328,7 +312,7 @@ impl Reader<'_, '_> {
 
     fn frame(&mut self, table: &DeTable<'_>) -> Option<Frame> {
         let help = "write body and origin of the frame that moves with the vehicle";
-        let table = self.section(table, "frame", help)?;
+        let table = self.fields.needed_section(table, "frame", help)?;
         self.fields.only(table, &["body", "origin"]);
         let body = self.required_text(table, "body", "write body = \"E\"");
         let origin = self.required_text(table, "origin", "write origin = \"C\"");
@@ -342,7 +326,7 @@ impl Reader<'_, '_> {
 
     fn channels(&mut self, table: &DeTable<'_>) -> Option<Vec<Channel>> {
         let help = "write a line for each coordinate of the model, such as x = { path = \"C\" }";
-        let table = self.section(table, "channels", help)?;
+        let table = self.fields.needed_section(table, "channels", help)?;
         let mut channels = Vec::new();
         for (name, value) in in_order(table) {
             let kind = self.channel(value);
@@ -353,7 +337,7 @@ impl Reader<'_, '_> {
 
     fn channel(&mut self, value: &Value<'_>) -> Option<ChannelKind> {
         let wanted = "one of { path = \"C\" }, { pitch_of = \"E\" }, { lean = [\"C\", \"G\"] }";
-        let table = self.table(value, wanted)?;
+        let table = self.fields.table(value, wanted)?;
         self.fields.only(table, &["path", "pitch_of", "lean"]);
         if table.len() != 1 {
             self.fields.wrong_type(value, wanted);
@@ -379,14 +363,6 @@ impl Reader<'_, '_> {
         self.body(&name, at).map(ChannelKind::Pitch)
     }
 
-    fn table<'a, 'd>(&mut self, value: &'a Value<'d>, wanted: &str) -> Option<&'a DeTable<'d>> {
-        let table = value.get_ref().as_table();
-        if table.is_none() {
-            self.fields.wrong_type(value, wanted);
-        }
-        table
-    }
-
     /// A value that has to be there.
     fn present<T>(&mut self, value: Option<T>, key: &str, whole: &Value<'_>) -> Option<T> {
         // A value of the wrong type has been reported already.
@@ -395,9 +371,7 @@ impl Reader<'_, '_> {
             .as_table()
             .is_some_and(|table| table.contains_key(key));
         if value.is_none() && !stands {
-            let message = format!("the key `{key}` is missing");
-            self.fields
-                .tell(Code::MissingKey, message, whole.span(), "");
+            self.fields.missing(key, whole.span(), "");
         }
         value
     }

@@ -20,7 +20,7 @@ use crate::kalman::filter::{Innovation, Pass};
 use crate::kalman::tape::{Record, SampleTape};
 use crate::matrix::{add_scaled, dot, multiply, multiply_add};
 use crate::motion::command;
-use crate::motion::plant::{Place, Plant, Scratch, Sums};
+use crate::motion::plant::{Place, Plant, Scratch};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{Span, added_by_rate, by_constant_rates};
 
@@ -474,35 +474,16 @@ impl<'p, 'a> Forward<'p, 'a> {
         let Measured::Output(output) = setup.reads(channel) else {
             return (Vec::new(), Vec::new(), Vec::new());
         };
-        let info = setup.model.info();
-        let n = self.pass.sizes.n;
-        let mut weights = vec![0.0; info.output_len()];
-        weights[output] = self.pass.values[self.pass.system.layout.scale(channel)];
-        let slopes = vec![0.0; info.output_len() * n];
-        let mut by = (
-            vec![0.0; n],
-            vec![0.0; info.parameter_len()],
-            vec![0.0; setup.lag_len()],
-        );
-        let mut by_inputs = vec![0.0; info.declared_inputs];
+        let scale = self.pass.values[self.pass.system.layout.scale(channel)];
         let t = self.pass.time_of(&sample.innovation);
         let mut z = self.pass.z.clone();
-        for (own, [value, _]) in z[info.state_len()..].iter_mut().zip(lags) {
+        for (own, [value, _]) in z[setup.model.info().state_len()..].iter_mut().zip(lags) {
             *own = *value;
         }
         let place = Place::new(self.pass.system.layout, self.pass.values, t, &z, held);
-        let mut sums = Sums {
-            z: &mut by.0,
-            p: &mut by.1,
-            lags: &mut by.2,
-            u: &mut by_inputs,
-        };
-        let weights = [weights.as_slice(), &slopes];
-        self.pass
-            .system
-            .plant
-            .output_adjoint(place, &mut self.scratch, weights, &mut sums);
-        (by.0, by.1, by_inputs)
+        let plant = self.pass.system.plant;
+        let by = plant.output_gradient(place, &mut self.scratch, output, scale);
+        (by.z, by.p, by.u)
     }
 }
 

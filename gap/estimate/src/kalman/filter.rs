@@ -145,11 +145,7 @@ impl<'a> Pass<'a> {
     pub(crate) fn blank(system: StateSpace<'a>, values: &'a [f64], run: usize) -> Self {
         let StateSpace { setup, plant, .. } = system;
         let (n, info) = (plant.n, plant.info());
-        let outputs = if setup.reads_outputs() {
-            info.output_len()
-        } else {
-            0
-        };
+        let outputs = setup.output_len();
         let sizes = Sizes {
             n,
             commands: command::NUMBERS * info.declared_inputs,
@@ -389,7 +385,7 @@ impl<'a> Pass<'a> {
         let first = self.samples.len();
         let measured = recording.measured(row);
         let t = recording.times()[row];
-        let channels = self.sampled(measured, only);
+        let channels = self.system.setup.sampled(measured, only);
         let (held, lags) =
             self.linearise_outputs(recording, row, self.sampling_time(t, only), &channels);
         let prior = self.record(channels.len() * self.sizes.sample_len());
@@ -427,16 +423,6 @@ impl<'a> Pass<'a> {
         let channel = &self.system.setup.channels[sample.channel];
         let delayed = channel.longest_delay.map(|_| sample.channel);
         self.sampling_time(sample.t, delayed)
-    }
-
-    /// The channels with a value among those of a row: one delayed channel, or all others.
-    fn sampled(&self, measured: &[f64], only: Option<usize>) -> Vec<usize> {
-        let channels = &self.system.setup.channels;
-        let is_sampled = |channel: &usize| {
-            let late = channels[*channel].longest_delay.is_some();
-            only.map_or(!late, |only| only == *channel) && !measured[*channel].is_nan()
-        };
-        (0..channels.len()).filter(is_sampled).collect()
     }
 
     /// Evaluates the outputs and their slopes if any is sampled; then returns their inputs, and those that lag.

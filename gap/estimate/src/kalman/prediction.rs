@@ -37,27 +37,16 @@ impl Estimation<'_> {
         horizon: f64,
         origins: &[usize],
     ) -> Result<Vec<Predicted>, EstimateError> {
-        self.check(values)?;
-        self.layout().place(Unknown::Initial { run, state: 0 })?;
-        let recording = &self.recordings()[run];
-        let actions = self.actions(run, values);
-        let mut pass = self.fresh(run, values, &actions, None, &[]);
-        let mut walk = Walk::new(&pass, recording);
         let mut predicted = Vec::new();
-        for (index, &action) in actions.iter().enumerate() {
-            pass.act(recording, action)?;
-            if let Action::Measure { row, channel: None } = action
-                && origins.binary_search(&row).is_ok()
-            {
-                walk.begin(&pass, row);
-                walk.on(&actions[index + 1..], horizon, &mut predicted);
-            }
-        }
+        let mut walk = None;
+        self.from_origins(values, run, origins, |pass, row, later| {
+            let walk = walk.get_or_insert_with(|| Walk::new(pass, &self.recordings()[run]));
+            walk.begin(pass, row);
+            walk.on(later, horizon, &mut predicted);
+        })?;
         Ok(predicted)
     }
-}
 
-impl Estimation<'_> {
     /// Variances in SI of the errors of [`Estimation::predictions`] if the model and its levels are
     /// correct, each with its origin and its channel.
     pub fn expected_errors(
@@ -67,26 +56,15 @@ impl Estimation<'_> {
         horizon: f64,
         origins: &[usize],
     ) -> Result<Vec<(usize, usize, f64)>, EstimateError> {
-        self.check(values)?;
-        self.layout().place(Unknown::Initial { run, state: 0 })?;
-        let recording = &self.recordings()[run];
-        let actions = self.actions(run, values);
-        let mut pass = self.fresh(run, values, &actions, None, &[]);
         let mut expected = Vec::new();
-        for (index, &action) in actions.iter().enumerate() {
-            pass.act(recording, action)?;
-            let Action::Measure { row, channel: None } = action else {
-                continue;
-            };
-            if origins.binary_search(&row).is_err() {
-                continue;
-            }
-            let mut ahead = self.fresh(run, values, &actions, None, &[]);
+        self.from_origins(values, run, origins, |pass, row, later| {
+            let recording = &self.recordings()[run];
+            let mut ahead = self.fresh(run, values, later, None, &[]);
             ahead.z.copy_from_slice(&pass.z);
             ahead.root.copy_from_slice(&pass.root);
             ahead.held.copy_from_slice(&pass.held);
             let mut open = vec![true; self.setup().channels.len()];
-            for &action in &actions[index + 1..] {
+            for &action in later {
                 let Action::Measure { row: met, .. } = action else {
                     // Predictions that overflow have no expected variance.
                     if ahead.act(recording, action).is_err() {
@@ -113,8 +91,31 @@ impl Estimation<'_> {
                     break;
                 }
             }
-        }
+        })?;
         Ok(expected)
+    }
+
+    /// Passes on the filter at each of the rows `origins`, which increase, with the actions that follow.
+    fn from_origins<'s>(
+        &'s self,
+        values: &'s [f64],
+        run: usize,
+        origins: &[usize],
+        mut begin: impl FnMut(&Pass<'s>, usize, &[Action]),
+    ) -> Result<(), EstimateError> {
+        self.check(values)?;
+        self.layout().place(Unknown::Initial { run, state: 0 })?;
+        let actions = self.actions(run, values);
+        let mut pass = self.fresh(run, values, &actions, None, &[]);
+        for (index, &action) in actions.iter().enumerate() {
+            pass.act(&self.recordings()[run], action)?;
+            if let Action::Measure { row, channel: None } = action
+                && origins.binary_search(&row).is_ok()
+            {
+                begin(&pass, row, &actions[index + 1..]);
+            }
+        }
+        Ok(())
     }
 }
 
@@ -212,10 +213,8 @@ impl<'a> Walk<'a> {
     ) {
         let measured = self.recording.measured(row);
         let mut outputs = Vec::new();
-        for (channel, open) in open.iter_mut().enumerate() {
-            let late = self.system.setup.channels[channel].longest_delay.is_some();
-            let sampled = only.map_or(!late, |only| only == channel);
-            if !*open || !sampled || measured[channel].is_nan() {
+        for channel in self.system.setup.sampled(measured, only) {
+            if !std::mem::take(&mut open[channel]) {
                 continue;
             }
             let quantity = match self.system.setup.reads(channel) {
@@ -239,7 +238,6 @@ impl<'a> Walk<'a> {
             let scale = self.values[self.system.layout.scale(channel)];
             let bias = self.values[self.system.layout.bias(channel)];
             let residual = measured[channel] - scale * quantity - bias;
-            *open = false;
             predicted.push(Predicted {
                 origin: self.origin,
                 row,

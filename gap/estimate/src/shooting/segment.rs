@@ -12,7 +12,7 @@ use crate::estimation::Estimation;
 use crate::matrix::{add_scaled, dot, multiply};
 use crate::motion::closure::Closure;
 use crate::motion::command::{self, OfOutputs, Switch};
-use crate::motion::plant::{Place, Plant, Scratch, Sums};
+use crate::motion::plant::{Place, Scratch};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, decays, is_uneven, within};
 
@@ -234,11 +234,7 @@ impl<'a> SegmentIntegrator<'a> {
         let (setup, layout) = (self.estimation.setup(), self.estimation.layout());
         let delay = only.map_or(0.0, |channel| self.values[layout.sensor_delay(channel)]);
         let (n, t) = (self.n, self.recording.times()[row] - delay);
-        let count = if setup.reads_outputs() {
-            self.estimation.plant(self.run).info().output_len()
-        } else {
-            0
-        };
+        let count = setup.output_len();
         let (mut outputs, mut slopes) = (vec![0.0; count], vec![0.0; count * n]);
         let read = OfOutputs::of(self.recording, row, &self.held, setup, layout, self.values);
         let place = Place::new(layout, self.values, t, &self.z, &read.held);
@@ -256,12 +252,8 @@ impl<'a> SegmentIntegrator<'a> {
                 by_lags.push(std::mem::take(slope) * by);
             }
         }
-        for (index, channel) in setup.channels.iter().enumerate() {
-            let measured = self.recording.measured(row)[index];
-            let late = channel.longest_delay.is_some();
-            if !only.map_or(!late, |only| only == index) || measured.is_nan() {
-                continue;
-            }
+        let measured = self.recording.measured(row);
+        for index in setup.sampled(measured, only) {
             let (scale, bias) = (layout.scale(index), layout.bias(index));
             let (scale, bias) = (self.values[scale], self.values[bias]);
             let weight = 1.0 / self.values[layout.noise(index)];
@@ -282,12 +274,9 @@ impl<'a> SegmentIntegrator<'a> {
                     {
                         add_scaled(-weight * scale * slope, by, line);
                     }
-                    by_parameters = output_slope(
-                        self.estimation.plant(self.run),
-                        place,
-                        &mut self.scratch,
-                        output,
-                    );
+                    let plant = self.estimation.plant(self.run);
+                    let gradient = plant.output_gradient(place, &mut self.scratch, output, 1.0);
+                    by_parameters = gradient.p;
                     outputs[output]
                 }
             };
@@ -309,35 +298,11 @@ impl<'a> SegmentIntegrator<'a> {
                         _ => 0.0,
                     };
             }
-            line[self.width] = weight * (measured - scale * quantity - bias);
+            line[self.width] = weight * (measured[index] - scale * quantity - bias);
             if !dot(line, line).is_finite() {
                 return Err(EstimateError::Diverged { run: self.run, t });
             }
         }
         Ok(())
     }
-}
-
-/// Derivatives of an output with respect to the parameters.
-fn output_slope(
-    plant: &Plant<'_>,
-    place: Place<'_>,
-    scratch: &mut Scratch,
-    output: usize,
-) -> Vec<f64> {
-    let count = plant.info().output_len();
-    let mut weights = vec![0.0; count];
-    weights[output] = 1.0;
-    let slopes = vec![0.0; count * plant.n];
-    let (mut z, mut lags) = (vec![0.0; plant.n], vec![0.0; place.lags.len()]);
-    let mut p = vec![0.0; place.p.len()];
-    let mut u = vec![0.0; plant.info().declared_inputs];
-    let mut sums = Sums {
-        z: &mut z,
-        p: &mut p,
-        lags: &mut lags,
-        u: &mut u,
-    };
-    plant.output_adjoint(place, scratch, [&weights, &slopes], &mut sums);
-    p
 }

@@ -244,7 +244,6 @@ impl<'b> File<'b> {
             names: vec![TIME.to_owned()],
             values: vec![Vec::new()],
             clock: OwnClock::Column,
-            findings: Vec::new(),
         };
         let mut left = budget;
         let mut add = |name: String, value: &dyn Fn(usize) -> f64| {

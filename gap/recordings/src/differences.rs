@@ -217,13 +217,12 @@ pub(crate) fn of_runs(
                 fields.unknown("parameter", key.get_ref(), key.span(), known);
             }
             for (index, one) in found {
-                let label = &named.mechanism.parameters[ParameterId::new(index)];
-                let stated = named.robot.is_some().then(|| parameters[index]);
-                let Some(read) = parameter(fields, value, label, stated, one) else {
+                let Some(read) = parameter(fields, value, named, parameters, (index, one)) else {
                     break;
                 };
+                let own = &named.mechanism.parameters[ParameterId::new(index)];
                 all.entry(run.clone()).or_default().push(Difference {
-                    parameter: label.label.name.clone(),
+                    parameter: own.label.name.clone(),
                     by: read.value - parameters[index].value,
                 });
             }

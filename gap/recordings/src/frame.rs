@@ -62,7 +62,6 @@ impl Logged<'_> {
                     names: frame.columns.clone(),
                     values: frame.values.clone(),
                     clock: OwnClock::None,
-                    findings: Vec::new(),
                 };
                 columns.table(&frame.name, time, channels, None, budget)
             }

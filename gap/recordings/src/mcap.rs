@@ -147,7 +147,6 @@ impl Log {
             names,
             values: columns,
             clock: OwnClock::Column,
-            findings: Vec::new(),
         })
     }
 }

@@ -41,7 +41,6 @@ pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Col
         names: Vec::new(),
         values: Vec::new(),
         clock: OwnClock::None,
-        findings: Vec::new(),
     };
     let mut left = budget;
     for index in 0..archive.len() {

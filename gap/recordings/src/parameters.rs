@@ -41,26 +41,26 @@ pub(crate) fn parameters(
             }
         }
         for (index, one) in found {
-            let own = &named.mechanism.parameters[ParameterId::new(index)];
-            let stated = named.robot.is_some().then(|| parameters[index]);
-            match parameter(fields, value, own, stated, one) {
-                Some(read) => parameters[index] = read,
-                None => break,
-            }
+            let Some(read) = parameter(fields, value, named, &parameters, (index, one)) else {
+                break;
+            };
+            parameters[index] = read;
         }
     }
     parameters
 }
 
-/// Reads a parameter. One of a robot, `stated` in its file, needs no value; it may be a factor, of a number that is
-/// `one` in SI.
+/// Reads one of the parameters. One of a robot, stated in its file, needs no value; it may be a factor, of a number that
+/// is `one` in SI.
 pub(crate) fn parameter(
     fields: &mut Fields<'_>,
     value: &Value<'_>,
-    own: &appell_spec::mechanism::Parameter,
-    stated: Option<Parameter>,
-    one: f64,
+    named: Named<'_>,
+    parameters: &[Parameter],
+    (index, one): (usize, f64),
 ) -> Option<Parameter> {
+    let own = &named.mechanism.parameters[ParameterId::new(index)];
+    let stated = named.robot.is_some().then(|| parameters[index]);
     let wanted = "a table such as { value = 1.2, unit = \"kg\", std = 0.03 }";
     let table = fields.table(value, wanted)?;
     fields.only(table, &["value", "unit", "std"]);

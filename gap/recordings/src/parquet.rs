@@ -49,7 +49,6 @@ fn columns(file: File, wanted: Wanted<'_>, budget: usize) -> Result<Option<Colum
         names: Vec::new(),
         values: Vec::new(),
         clock: OwnClock::None,
-        findings: Vec::new(),
     };
     let mut stamps = Vec::new();
     let mut left = budget;

@@ -62,7 +62,8 @@ fn read(
         if missing > 0 {
             let (rows, all) = (counted(missing, "value"), values.len());
             if matches!(channel.role, Role::Input(_)) {
-                hold(values);
+                let first = values.iter().copied().find(|value| !value.is_nan());
+                hold(values, first.unwrap_or(0.0));
                 let message = format!("{rows} of {all} missing; the value before holds on");
                 tell(FindingKind::HeldInput, message);
             } else {
@@ -131,10 +132,9 @@ fn without_lost_inputs(mut table: Table, channels: &[Channel]) -> Table {
     table
 }
 
-/// Replaces missing values by the previous one; at the beginning by the first one present.
-fn hold(values: &mut [f64]) {
-    let first = values.iter().copied().find(|value| !value.is_nan());
-    let mut last = first.unwrap_or(0.0);
+/// Replaces missing values by the previous one, those at the beginning by `first`.
+pub(crate) fn hold(values: &mut [f64], first: f64) {
+    let mut last = first;
     for value in values {
         if value.is_nan() {
             *value = last;

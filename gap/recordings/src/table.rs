@@ -29,8 +29,6 @@ pub(crate) struct Columns {
     pub(crate) values: Vec<Vec<f64>>,
     /// The clock of the format itself.
     pub(crate) clock: OwnClock,
-    /// Omitted rows.
-    pub(crate) findings: Vec<Finding>,
 }
 
 /// The times of the rows, as given by a format.
@@ -75,7 +73,7 @@ impl Columns {
 
     /// The columns of the channels in SI, in rows of increasing times.
     pub(crate) fn table(
-        mut self,
+        self,
         file: &str,
         time: &Stated,
         channels: &[Channel],
@@ -99,7 +97,7 @@ impl Columns {
         };
         let places: Result<Vec<usize>, _> = channels.iter().map(|c| place(&c.column)).collect();
         let places = places?;
-        self.findings.extend(ignored(&self.names, &time, &places));
+        let mut findings = Vec::from_iter(ignored(&self.names, &time, &places));
         let mut clock = Clock::default();
         // Formats in columns may be damaged so that these differ.
         if let Some(place) = places
@@ -121,7 +119,7 @@ impl Columns {
             .filter(|&row| episode.as_ref().is_none_or(|rows| rows[row]))
             .filter(|&row| clock.accept(times[row], row + 1, &format!("row {}", row + 1)))
             .collect();
-        self.findings.extend(clock.findings(file)?);
+        findings.extend(clock.findings(file)?);
         let numbers = rows.len().saturating_mul(1 + channels.len());
         *budget = budget
             .checked_sub(numbers)
@@ -139,10 +137,9 @@ impl Columns {
         let mut columns: Vec<Vec<f64>> = places.iter().zip(channels).map(column).collect();
         let mut times: Vec<f64> = rows.iter().map(|&row| times[row]).collect();
         if matches!(self.clock, OwnClock::Column) {
-            let joined = topics::joined(&mut times, &mut columns, channels);
-            self.findings.extend(joined);
+            findings.extend(topics::joined(&mut times, &mut columns, channels));
         }
-        checked(file, &time, times, channels, columns, self.findings)
+        checked(file, &time, times, channels, columns, findings)
     }
 
     /// The times in s. The unit that the format states is not stated otherwise; time stamps count from the first row

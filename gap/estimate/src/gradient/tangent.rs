@@ -224,10 +224,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             return;
         };
         closure.follow(&mut self.z);
-        let t = match action {
-            Action::Advance(advance) => advance.t + advance.h,
-            _ => recording_time(recording, action),
-        };
+        let t = action.end(recording);
         let (z, held) = (&self.pass.z, &self.pass.held);
         let place = Place::new(self.pass.system.layout, self.pass.values, t, z, held);
         for (column, direction) in self.directions.iter().enumerate() {
@@ -518,12 +515,4 @@ fn by_input(
 
 fn is_parameter(direction: &Direction) -> bool {
     matches!(direction, Direction::Value(Unknown::Parameter(_)))
-}
-
-fn recording_time(recording: &crate::Recording, action: Action) -> f64 {
-    match action {
-        Action::Switch { row, .. } => recording.time_of(row),
-        Action::Measure { row, .. } => recording.times()[row],
-        Action::Advance(advance) => advance.t,
-    }
 }

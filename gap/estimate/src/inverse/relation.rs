@@ -326,17 +326,6 @@ impl<'a> Relations<'a> {
     }
 }
 
-impl std::fmt::Debug for Relations<'_> {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .debug_struct("Relations")
-            .field("model", &self.model.info().name)
-            .field("measured", &self.measured)
-            .field("reference", &self.reference)
-            .finish()
-    }
-}
-
 impl Place {
     /// Where the model is evaluated.
     fn at<'a>(&'a self, p: &'a [f64]) -> At<'a> {

@@ -104,15 +104,6 @@ pub(crate) struct Pass<'a> {
 }
 
 impl<'a> Pass<'a> {
-    /// Filters a recording.
-    pub(crate) fn over(
-        &mut self,
-        recording: &Recording,
-        actions: &[Action],
-    ) -> Result<(), EstimateError> {
-        (actions.iter()).try_for_each(|&action| self.act(recording, action))
-    }
-
     /// Before the first action. Without an empty `tape` to keep it on only the innovations remain.
     pub(crate) fn new(
         system: StateSpace<'a>,
@@ -189,25 +180,19 @@ impl<'a> Pass<'a> {
             self.tape.clear();
         }
         match action {
-            Action::Advance(advance) => {
-                self.advance(advance, 1)?;
-                self.close(advance.t + advance.h)
-            }
+            Action::Advance(advance) => self.advance(advance, 1)?,
             Action::Switch { row, input } => {
                 let first = self.records.is_empty();
                 let StateSpace { setup, layout, .. } = self.system;
                 let switch = Switch { row, input, first };
                 switch.apply(&mut self.held, setup, layout, self.values, recording);
-                if first {
-                    self.close(recording.time_of(row))?;
+                if !first {
+                    return Ok(());
                 }
-                Ok(())
             }
-            Action::Measure { row, channel } => {
-                self.measure(recording, row, channel)?;
-                self.close(recording.times()[row])
-            }
+            Action::Measure { row, channel } => self.measure(recording, row, channel)?,
         }
+        self.close(action.end(recording))
     }
 
     pub(crate) fn log_likelihood(&self) -> f64 {
@@ -398,8 +383,7 @@ impl<'a> Pass<'a> {
                 tape: prior + count * self.sizes.sample_len(),
                 prior,
             };
-            let quantity = self.keep(reading);
-            self.update(reading, quantity)?;
+            self.update(reading)?;
         }
         let samples = first..self.samples.len();
         let row = only.is_none().then_some(row);
@@ -454,18 +438,23 @@ impl<'a> Pass<'a> {
         (read.held, read.lags)
     }
 
-    /// Records the state, the root of P and the output row before a scalar update. Returns the quantity without scale
-    /// and bias, in the state before the first scalar of this time.
-    fn keep(&mut self, reading: Reading) -> f64 {
+    /// Updates the state and the root of P by a scalar, after recording both and the output row. The quantity without scale
+    /// and bias is that in the state before the first scalar of this time.
+    fn update(&mut self, reading: Reading) -> Result<(), EstimateError> {
         let Reading {
+            row,
             channel,
+            t,
+            measured,
             tape,
             prior,
-            ..
         } = reading;
-        let n = self.sizes.n;
+        let (n, layout, values) = (self.sizes.n, self.system.layout, self.values);
+        let gain = values[layout.scale(channel)];
+        let bias = values[layout.bias(channel)];
+        let noise = values[layout.noise(channel)];
         let (earlier, rest) = self.tape.split_at_mut(tape);
-        let SampleTape { c, z, root, .. } = self.sizes.sample(rest);
+        let SampleTape { c, a, z, root } = self.sizes.sample(rest);
         z.copy_from_slice(&self.z);
         root.copy_from_slice(&self.root);
         c.fill(0.0);
@@ -483,26 +472,7 @@ impl<'a> Pass<'a> {
                 self.outputs[output]
             }
         };
-        scale(self.values[self.system.layout.scale(channel)], c);
-        quantity
-    }
-
-    /// Updates the state and the root of P by a scalar.
-    fn update(&mut self, reading: Reading, quantity: f64) -> Result<(), EstimateError> {
-        let Reading {
-            row,
-            channel,
-            t,
-            measured,
-            tape,
-            prior,
-        } = reading;
-        let n = self.sizes.n;
-        let (earlier, rest) = self.tape.split_at_mut(tape);
-        let SampleTape { c, a, z, root } = self.sizes.sample(rest);
-        let gain = self.values[self.system.layout.scale(channel)];
-        let bias = self.values[self.system.layout.bias(channel)];
-        let noise = self.values[self.system.layout.noise(channel)];
+        scale(gain, c);
         let residual = measured - gain * quantity - bias;
         let r = noise * noise;
         let mut white = residual;

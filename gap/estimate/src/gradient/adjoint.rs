@@ -116,13 +116,7 @@ impl Backward<'_, '_> {
     /// A step.
     fn advance(&mut self, advance: Advance, on: &StepTape<'_>, gradient: &mut [f64]) {
         let pass = self.pass;
-        let span = Span {
-            t: advance.t,
-            h: advance.h,
-            held: on.held,
-            p: pass.p(),
-            lags: pass.lags(),
-        };
+        let span = Span::new(pass.system.layout, pass.values, advance, on.held);
         self.covariance(on);
         let (mut by_h, is_pushed) = self.levels(advance.h, on, gradient);
         let [product, by_f, covariance] = &mut self.square;

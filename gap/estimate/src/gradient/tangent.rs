@@ -325,15 +325,10 @@ impl<'p, 'a> Forward<'p, 'a> {
             self.pass.sizes.n,
             self.estimation.setup().model.info().state_len(),
         );
-        let (p, lags, plant) = (self.pass.p(), self.pass.lags(), self.pass.system.plant);
+        let (lags, plant) = (self.pass.lags(), self.pass.system.plant);
         let on = self.pass.sizes.step(tape);
-        let span = Span {
-            t: advance.t,
-            h: advance.h,
-            held: on.held,
-            p,
-            lags,
-        };
+        let (layout, values) = (self.pass.system.layout, self.pass.values);
+        let span = Span::new(layout, values, advance, on.held);
         let stage = |i: usize| span.place(i, &on.stages.z[i * n..(i + 1) * n]);
         let added = |state, rates| added_by_rate(&on.stages, n, advance.h, state, rates);
         let mut filters = [const { Vec::new() }; 4];

@@ -202,10 +202,6 @@ impl<'a> Pass<'a> {
             .sum()
     }
 
-    pub(crate) fn p(&self) -> &'a [f64] {
-        &self.values[..self.system.layout.parameters]
-    }
-
     pub(crate) fn lags(&self) -> &'a [f64] {
         let start = self.system.layout.lag(0);
         &self.values[start..start + self.system.layout.lags]
@@ -252,18 +248,12 @@ impl<'a> Pass<'a> {
         let tape = self.record(self.sizes.step_len());
         self.records.push(Record::Advance { advance, tape });
         let (n, d) = (self.sizes.n, self.sizes.disturbances);
-        let (p, lags, h) = (self.p(), self.lags(), advance.h);
+        let h = advance.h;
         let mut on = self.sizes.step(&mut self.tape[tape..]);
         on.held.copy_from_slice(&self.held);
         on.root.copy_from_slice(&self.root);
         on.stages.z[..n].copy_from_slice(&self.z);
-        let span = Span {
-            t: advance.t,
-            h,
-            held: on.held,
-            p,
-            lags,
-        };
+        let span = Span::new(self.system.layout, self.values, advance, on.held);
         if self.is_disturbed {
             directions(
                 self.system.setup,

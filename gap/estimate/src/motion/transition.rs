@@ -5,6 +5,8 @@
 
 use super::command;
 use super::plant::{Place, Plant, Scratch, Sums};
+use super::timeline::Advance;
+use crate::data::layout::Layout;
 use crate::matrix::{
     add, add_scaled, dot, multiply, multiply_transposed, pieces, scale, set_identity,
     transposed_multiply,
@@ -54,25 +56,33 @@ impl<'a> Stages<'a> {
     }
 }
 
-/// Time, length and inputs of a step.
+/// Time, length, inputs and parameters of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Span<'a> {
-    pub(crate) t: f64,
-    pub(crate) h: f64,
-    pub(crate) held: &'a [f64],
-    pub(crate) p: &'a [f64],
-    pub(crate) lags: &'a [f64],
+    /// Its start, without a state.
+    start: Place<'a>,
+    h: f64,
 }
 
 impl<'a> Span<'a> {
+    pub(crate) fn new(
+        layout: Layout,
+        values: &'a [f64],
+        advance: Advance,
+        held: &'a [f64],
+    ) -> Self {
+        Self {
+            start: Place::new(layout, values, advance.t, &[], held),
+            h: advance.h,
+        }
+    }
+
     /// The point of a stage.
     pub(crate) fn place(&self, stage: usize, z: &'a [f64]) -> Place<'a> {
         Place {
-            t: self.t + part(stage) * self.h,
+            t: self.start.t + part(stage) * self.h,
             z,
-            held: self.held,
-            p: self.p,
-            lags: self.lags,
+            ..self.start
         }
     }
 }

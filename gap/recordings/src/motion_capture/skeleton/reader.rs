@@ -200,11 +200,8 @@ impl<'r, 't> Reader<'r, 't> {
         self.centre.clone_from(&centre);
         let mass = self.mass(rider);
         let (name, at) = self.required_text(rider, "table", "write table = \"de_leva_men\"")?;
-        let names = || TABLES.iter().map(|table| table.name);
-        let Some(anthropometry) = Anthropometry::named(&name) else {
-            self.unknown("table", &name, at, names());
-            return None;
-        };
+        let names = TABLES.iter().map(|table| table.name);
+        let anthropometry = &TABLES[self.named("table", &name, at, names)?];
         let segments = self.segments(table, anthropometry, mass.unwrap_or(1.0))?;
         Some(Rider {
             mass: mass?,
@@ -275,11 +272,8 @@ impl<'r, 't> Reader<'r, 't> {
         self.fields.only(table, &["part", "from", "to"]);
         let part = self.fields.string(table, "part");
         let (part, at) = self.present(part, "part", value)?;
-        let Some(row) = anthropometry.part(&part) else {
-            let parts = anthropometry.parts.iter().map(|part| part.name);
-            self.unknown("part", &part, at, parts);
-            return None;
-        };
+        let parts = anthropometry.parts.iter().map(|part| part.name);
+        let row = &anthropometry.parts[self.named("part", &part, at, parts)?];
         let from = self.end(table, "from", value);
         let to = self.end(table, "to", value);
         Some(Segment {
@@ -377,21 +371,13 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     fn body(&mut self, name: &str, at: Span) -> Option<usize> {
-        let found = self.bodies.iter().position(|body| body == name);
-        if found.is_none() {
-            let names: Vec<String> = self.bodies.clone();
-            self.unknown("body", name, at, names.iter().map(String::as_str));
-        }
-        found
+        let bodies = self.bodies.clone();
+        self.named("body", name, at, bodies.iter().map(String::as_str))
     }
 
     fn point_named(&mut self, name: &str, at: Span) -> Option<usize> {
-        let found = self.points.iter().position(|point| point.name == name);
-        if found.is_none() {
-            let names: Vec<String> = self.points.iter().map(|p| p.name.clone()).collect();
-            self.unknown("point", name, at, names.iter().map(String::as_str));
-        }
-        found
+        let points: Vec<String> = self.points.iter().map(|p| p.name.clone()).collect();
+        self.named("point", name, at, points.iter().map(String::as_str))
     }
 
     fn place(&mut self, name: &str, at: Span) -> Option<Place> {
@@ -401,19 +387,25 @@ impl<'r, 't> Reader<'r, 't> {
         self.point_named(name, at).map(Place::Point)
     }
 
-    fn unknown<'n>(
+    /// The place of a name among those that are known; other names are reported.
+    fn named<'n>(
         &mut self,
         what: &str,
         name: &str,
         at: Span,
-        known: impl Iterator<Item = &'n str> + Clone,
-    ) {
-        let help = did_you_mean(name, known.clone(), || {
-            let list: Vec<&str> = known.collect();
-            format!("there are {}", list.join(", "))
-        });
-        let message = format!("there is no {what} `{}`", shown(name));
-        self.fields.tell(Code::UnknownReference, message, at, &help);
+        mut known: impl Iterator<Item = &'n str> + Clone,
+    ) -> Option<usize> {
+        let all = known.clone();
+        let found = known.position(|own| own == name);
+        if found.is_none() {
+            let help = did_you_mean(name, all.clone(), || {
+                let list: Vec<&str> = all.collect();
+                format!("there are {}", list.join(", "))
+            });
+            let message = format!("there is no {what} `{}`", shown(name));
+            self.fields.tell(Code::UnknownReference, message, at, &help);
+        }
+        found
     }
 }
 

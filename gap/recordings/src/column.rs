@@ -147,27 +147,22 @@ pub(crate) fn channel(
 /// The tolerance of the scale of a sensor, `scale_std`, or of the gain of an actuator, `gain_std`.
 fn tolerance(fields: &mut Fields<'_>, table: &DeTable<'_>, role: Role) -> Option<f64> {
     let keys = [
-        (
-            "scale_std",
-            matches!(role, Role::Measures(_)),
-            "a measured channel has a scale",
-            "`gain_std`",
-        ),
-        (
-            "gain_std",
-            matches!(role, Role::Input(_)),
-            "an input has a gain",
-            "`scale_std`",
-        ),
+        ("scale_std", "a measured channel has a scale", "gain_std"),
+        ("gain_std", "an input has a gain", "scale_std"),
     ];
+    let own = match role {
+        Role::Measures(_) => "scale_std",
+        Role::Input(_) => "gain_std",
+        Role::Recorded => "",
+    };
     let mut stated = None;
-    for (key, belongs, why, other) in keys {
+    for (key, why, other) in keys {
         let Some(value) = table.get(key) else {
             continue;
         };
-        if !belongs {
+        if key != own {
             let message = format!("only {why}");
-            let help = format!("remove `{key}`, or write {other}");
+            let help = format!("remove `{key}`, or write `{other}`");
             fields.tell(Code::NotAllowedHere, message, value.span(), &help);
             continue;
         }

@@ -53,14 +53,20 @@ fn tables<'a, 'd>(
     tables
 }
 
+/// The names of the parameters of a table, that of all runs or of one.
+pub(crate) fn parameter_keys(table: &DeTable<'_>) -> Vec<String> {
+    let own = table.get("parameters");
+    let own = own.and_then(|own| own.get_ref().as_table());
+    let keys = own.into_iter().flat_map(DeTable::keys);
+    keys.map(|key| key.get_ref().to_string()).collect()
+}
+
 /// The names of parameters that runs have of their own.
 pub(crate) fn keys(table: &DeTable<'_>) -> Vec<String> {
     let runs = table.get(SECTION).and_then(|own| own.get_ref().as_table());
     let runs = runs.into_iter().flat_map(DeTable::values);
-    let own = runs.filter_map(|run| run.get_ref().as_table()?.get("parameters"));
-    let own = own.filter_map(|own| own.get_ref().as_table());
-    let keys = own.flat_map(DeTable::keys);
-    keys.map(|key| key.get_ref().to_string()).collect()
+    let runs = runs.filter_map(|run| run.get_ref().as_table());
+    runs.flat_map(parameter_keys).collect()
 }
 
 /// The payloads of all runs.

@@ -103,7 +103,7 @@ pub(crate) fn read(
         return Err(fields.report().into());
     };
     let options = robot::options(&mut fields, table);
-    let mut keys = parameter_keys(table);
+    let mut keys = differences::parameter_keys(table);
     keys.extend(differences::keys(table));
     let robot = Robot::read(Path::new(&spec.file), &spec.text, keys, &options)?;
     let (spec, robot) = match robot {
@@ -150,15 +150,6 @@ fn first_run(table: &DeTable<'_>) -> Option<String> {
     let mut lists = ["fit", "test"].into_iter().filter_map(|key| runs.get(key));
     let list = lists.find_map(|list| list.get_ref().as_array()?.iter().next())?;
     list.get_ref().as_str().map(str::to_owned)
-}
-
-/// The keys of `[parameters]`.
-fn parameter_keys(table: &DeTable<'_>) -> Vec<String> {
-    let section = table
-        .get("parameters")
-        .and_then(|own| own.get_ref().as_table());
-    let keys = section.into_iter().flat_map(DeTable::keys);
-    keys.map(|key| key.get_ref().to_string()).collect()
 }
 
 /// The spec of a name, or of a path relative to the description.

@@ -125,13 +125,21 @@ fn width(
     column: &ColumnDescriptor,
 ) -> Result<usize> {
     for group in 0..reader.num_row_groups() {
-        let mut first = Lists::default();
+        let mut count = 0;
+        let mut add = |levels: &[i16], values: &[Option<f64>]| {
+            let pairs = levels.iter().zip(values);
+            let own = pairs.filter(|(level, value)| **level > 0 || value.is_some());
+            count += own.count();
+            if count > MOST_COLUMNS {
+                let message = format!("a list has more than {MOST_COLUMNS} numbers");
+                return Err(ParquetError::General(message));
+            }
+            Ok(())
+        };
         let reader = reader.get_row_group(group)?.get_column_reader(index)?;
-        visit(reader, column, 1, ROWS_OF_LISTS, &mut |levels, values| {
-            first.add_all(levels, values, None)
-        })?;
-        if first.count > 0 {
-            return Ok(first.count);
+        visit(reader, column, 1, ROWS_OF_LISTS, &mut add)?;
+        if count > 0 {
+            return Ok(count);
         }
     }
     Ok(0)
@@ -139,73 +147,39 @@ fn width(
 
 /// Appends the lists of a group of rows to one column for each of their places.
 fn lists(reader: ColumnReader, column: &ColumnDescriptor, to: &mut [Vec<f64>]) -> Result<()> {
-    let mut lists = Lists::default();
-    let width = to.len();
-    let mut add = |levels: &[i16], values: &[Option<f64>]| lists.add_all(levels, values, Some(to));
-    visit(reader, column, usize::MAX, ROWS_OF_LISTS, &mut add)?;
-    // A list that breaks off ends here.
-    lists.fill(to, width);
-    Ok(())
-}
-
-/// The list that is being read.
-#[derive(Default)]
-struct Lists {
-    /// How many numbers of it there were.
-    count: usize,
-    is_open: bool,
-}
-
-impl Lists {
-    /// Numbers, each with its level: above zero where it belongs to the list before.
-    fn add_all(
-        &mut self,
-        levels: &[i16],
-        values: &[Option<f64>],
-        mut to: Option<&mut [Vec<f64>]>,
-    ) -> Result<()> {
-        let mut pairs = levels.iter().zip(values);
-        pairs.try_for_each(|(level, value)| self.add(*level > 0, *value, to.as_deref_mut()))
-    }
-
-    /// The next number of a list, or the first one of the next list.
-    fn add(
-        &mut self,
-        repeated: bool,
-        value: Option<f64>,
-        to: Option<&mut [Vec<f64>]>,
-    ) -> Result<()> {
-        if let Some(to) = to {
-            if !repeated {
-                self.fill(to, to.len());
-                self.count = 0;
+    let (mut count, mut is_open) = (0, false);
+    let mut add = |levels: &[i16], values: &[Option<f64>]| {
+        for (level, value) in levels.iter().zip(values) {
+            let is_repeated = *level > 0;
+            if !is_repeated {
+                fill(to, count, is_open);
+                count = 0;
             }
-            self.is_open = true;
-            if value.is_some() || repeated {
-                let Some(column) = to.get_mut(self.count) else {
-                    let message =
-                        format!("a list has more than the {} numbers of the first", to.len());
+            is_open = true;
+            if value.is_some() || is_repeated {
+                let most = to.len();
+                let Some(column) = to.get_mut(count) else {
+                    let message = format!("a list has more than the {most} numbers of the first");
                     return Err(ParquetError::General(message));
                 };
                 column.push(value.unwrap_or(f64::NAN));
+                count += 1;
             }
-        }
-        self.count += usize::from(value.is_some() || repeated);
-        if self.count > MOST_COLUMNS {
-            let message = format!("a list has more than {MOST_COLUMNS} numbers");
-            return Err(ParquetError::General(message));
         }
         Ok(())
-    }
+    };
+    visit(reader, column, usize::MAX, ROWS_OF_LISTS, &mut add)?;
+    // A list that breaks off ends here.
+    fill(to, count, is_open);
+    Ok(())
+}
 
-    /// Fills a list that is shorter than the first one.
-    fn fill(&mut self, to: &mut [Vec<f64>], width: usize) {
-        if self.is_open {
-            for column in &mut to[self.count.min(width)..] {
-                column.push(f64::NAN);
-            }
+/// Fills a list with fewer numbers than the first one, if one is open.
+fn fill(to: &mut [Vec<f64>], count: usize, is_open: bool) {
+    if is_open {
+        for column in &mut to[count..] {
+            column.push(f64::NAN);
         }
-        self.is_open = false;
     }
 }
 

@@ -13,7 +13,7 @@ use crate::matrix::{
 };
 use crate::motion::closure::Closure;
 use crate::motion::command;
-use crate::motion::plant::{Place, Scratch, StateSpace, Sums};
+use crate::motion::plant::{Scratch, StateSpace, Sums};
 use crate::motion::timeline::Advance;
 use crate::motion::transition::{self, ByEnds, Effects, Reverse, Span};
 
@@ -105,8 +105,8 @@ impl Backward<'_, '_> {
             return;
         };
         let closed = z.to_vec();
-        let StateSpace { plant, layout, .. } = self.pass.system;
-        let place = Place::new(layout, self.pass.values, t, &closed, held);
+        let plant = self.pass.system.plant;
+        let place = self.pass.place(t, &closed, held);
         // The forward pass succeeded here.
         let _ = closure.close(plant, place, &mut self.scratch, z);
         let (scratch, sums) = (&mut self.scratch, &mut self.sums);
@@ -290,7 +290,7 @@ impl Backward<'_, '_> {
                 *own = *value;
             }
             let t = pass.time_of(&first.innovation);
-            let place = Place::new(pass.system.layout, pass.values, t, &read, held);
+            let place = pass.place(t, &read, held);
             let weights = [self.mu.as_slice(), &self.slopes];
             let plant = pass.system.plant;
             plant.output_adjoint(place, &mut self.scratch, weights, &mut self.sums);

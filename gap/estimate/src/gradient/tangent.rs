@@ -225,8 +225,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         };
         closure.follow(&mut self.z);
         let t = action.end(recording);
-        let (z, held) = (&self.pass.z, &self.pass.held);
-        let place = Place::new(self.pass.system.layout, self.pass.values, t, z, held);
+        let place = self.pass.place(t, &self.pass.z, &self.pass.held);
         for (column, direction) in self.directions.iter().enumerate() {
             if let Direction::Value(Unknown::Parameter(index)) = *direction {
                 let plant = self.pass.system.plant;
@@ -248,8 +247,8 @@ impl<'p, 'a> Forward<'p, 'a> {
         let plant = self.pass.system.plant;
         let on = self.pass.sizes.step(tape);
         let middle = &on.stages.z[n..2 * n];
-        let (values, t) = (self.pass.values, advance.t + 0.5 * advance.h);
-        let place = Place::new(self.pass.system.layout, values, t, middle, on.held);
+        let t = advance.t + 0.5 * advance.h;
+        let place = self.pass.place(t, middle, on.held);
         self.added.fill(0.0);
         if self.directions.iter().any(is_parameter) {
             plant.parameter_jacobian(place, &mut self.scratch, &mut self.by_parameters);
@@ -370,8 +369,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             if old.to_bits() == new.to_bits() {
                 continue;
             }
-            let (z, held) = (&self.pass.z, &self.pass.held);
-            let place = Place::new(self.pass.system.layout, self.pass.values, t, z, held);
+            let place = self.pass.place(t, &self.pass.z, &self.pass.held);
             let (by_states, by_inputs) = (&mut self.by_states, &mut self.by_inputs);
             let by = by_input(plant, place, &mut self.scratch, by_states, by_inputs, input);
             for (state, by) in by.into_iter().enumerate() {
@@ -472,7 +470,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         for (own, [value, _]) in z[setup.model.info().state_len()..].iter_mut().zip(lags) {
             *own = *value;
         }
-        let place = Place::new(self.pass.system.layout, self.pass.values, t, &z, held);
+        let place = self.pass.place(t, &z, held);
         let plant = self.pass.system.plant;
         let by = plant.output_gradient(place, &mut self.scratch, output, scale);
         (by.z, by.p, by.u)

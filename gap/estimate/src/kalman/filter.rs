@@ -202,6 +202,14 @@ impl<'a> Pass<'a> {
             .sum()
     }
 
+    /// A point at a time, state and commands.
+    pub(crate) fn place<'p>(&self, t: f64, z: &'p [f64], held: &'p [f64]) -> Place<'p>
+    where
+        'a: 'p,
+    {
+        Place::new(self.system.layout, self.values, t, z, held)
+    }
+
     pub(crate) fn lags(&self) -> &'a [f64] {
         let start = self.system.layout.lag(0);
         &self.values[start..start + self.system.layout.lags]

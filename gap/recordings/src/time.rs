@@ -268,24 +268,33 @@ pub(crate) fn is_part(name: &str, of: &str) -> bool {
 
 /// The unit of the times that the name of a column states.
 pub(crate) fn unit_of(name: &str) -> Option<Unit> {
-    split(name, NAMES).or_else(|| split(name, STAMPS))?
+    let named = split(name, NAMES).or_else(|| split(name, STAMPS));
+    named?.unit
 }
 
-/// The unit behind the name of a clock, `None` where there is none; nothing for other names.
-fn split(name: &str, known: &str) -> Option<Option<Unit>> {
+/// What stands behind the name of a clock.
+struct Behind {
+    unit: Option<Unit>,
+}
+
+/// What stands behind the name of a clock; nothing for other names.
+fn split(name: &str, known: &str) -> Option<Behind> {
     let name = name.trim();
     if let Some((clock, unit)) = bracketed(name) {
         let unit = unit_by(unit)?;
-        return has(known, &plain(clock)).then_some(Some(unit));
+        let unit = Some(unit);
+        return has(known, &plain(clock)).then_some(Behind { unit });
     }
     let whole = plain(name);
     if has(known, &whole) {
-        return Some(None);
+        return Some(Behind { unit: None });
     }
     let (clock, last) = whole.rsplit_once('_')?;
     let mut units = UNITS.iter();
     let is_unit = units.any(|(symbol, words)| *symbol == last || has(words, last));
-    (is_unit && has(known, clock)).then(|| unit_by(last))
+    (is_unit && has(known, clock)).then(|| Behind {
+        unit: unit_by(last),
+    })
 }
 
 /// Splits a name into the part before and the part within trailing brackets.

@@ -36,7 +36,7 @@ impl Estimation<'_> {
     ) -> Result<Vec<Predicted>, EstimateError> {
         let mut predicted = Vec::new();
         let mut walk = None;
-        self.from_origins(values, run, origins, |pass, row, later| {
+        self.at_origins(values, run, origins, |pass, row, later| {
             let walk = walk.get_or_insert_with(|| Walk::new(pass, &self.recordings()[run]));
             walk.begin(pass, row);
             walk.on(later, horizon, &mut predicted);
@@ -54,7 +54,7 @@ impl Estimation<'_> {
         origins: &[usize],
     ) -> Result<Vec<(usize, usize, f64)>, EstimateError> {
         let mut expected = Vec::new();
-        self.from_origins(values, run, origins, |pass, row, later| {
+        self.at_origins(values, run, origins, |pass, row, later| {
             let recording = &self.recordings()[run];
             let mut ahead = self.fresh(run, values, later, None, &[]);
             ahead.z.copy_from_slice(&pass.z);
@@ -93,7 +93,7 @@ impl Estimation<'_> {
     }
 
     /// Passes on the filter at each of the rows `origins`, which increase, with the actions that follow.
-    fn from_origins<'s>(
+    fn at_origins<'s>(
         &'s self,
         values: &'s [f64],
         run: usize,

@@ -35,6 +35,9 @@ pub(crate) struct Stage<'s> {
     pub(crate) slopes: &'s [f64],
 }
 
+/// Takes the stages of a step, with work arrays.
+pub(crate) type Follow<'f> = &'f mut dyn FnMut(Stage<'_>, &mut Scratch);
+
 impl<'a> Unfiltered<'a> {
     /// At no state yet.
     pub(crate) fn new(system: StateSpace<'a>, values: &'a [f64], recording: &'a Recording) -> Self {
@@ -86,7 +89,7 @@ impl<'a> Unfiltered<'a> {
         &mut self,
         advance: Advance,
         of: u32,
-        mut follow: Option<&mut dyn FnMut(Stage<'_>, &mut Scratch)>,
+        mut follow: Option<Follow<'_>>,
     ) -> u32 {
         let (Advance { t, h, .. }, n) = (advance, self.z.len());
         let StateSpace {

@@ -77,7 +77,8 @@ impl<'a> Estimation<'a> {
         self.plants.get(&run).unwrap_or(&self.plant)
     }
 
-    fn system(&self, run: usize) -> StateSpace<'_> {
+    /// The state-space model of a run.
+    pub(super) fn system(&self, run: usize) -> StateSpace<'_> {
         StateSpace {
             setup: self.setup,
             plant: self.plant(run),
@@ -184,7 +185,9 @@ impl<'a> Estimation<'a> {
         let actions = self.actions(run, values);
         let tape = keeps.then(|| self.blank_tape());
         let mut pass = self.fresh(run, values, &actions, tape, most_steps);
-        pass.over(&self.recordings[run], &actions)?;
+        for &action in &actions {
+            pass.act(&self.recordings[run], action)?;
+        }
         Ok(pass)
     }
 

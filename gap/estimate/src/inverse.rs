@@ -65,14 +65,6 @@ pub enum InverseError {
         /// Their number.
         coordinates: usize,
     },
-    /// A sought value that does not exist.
-    #[error("value {index} is sought, but there are only {len}")]
-    Unknown {
-        /// Its index.
-        index: usize,
-        /// Their number.
-        len: usize,
-    },
     /// The model depends explicitly on time.
     #[error(
         "the model depends explicitly on time, by a signal or a formula; coordinates alone do not determine its motion"

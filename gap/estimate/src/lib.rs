@@ -23,7 +23,7 @@
 //! | `shooting/` | fits without disturbances, from starts far from the truth |
 //! | `statistics/` | χ², robust covariance, consistency of innovations |
 //! | `inverse/` | the inputs of a measured motion, and its input-free relations |
-//! | `smoothing/` | derivatives of noisy samples with their covariance |
+//! | `smoothing/` | derivatives of noisy samples with their standard deviations |
 //! | `parallel.rs` | independent pieces of work on all processors |
 //! | `matrix.rs`, `error.rs` | products of dense matrices; errors |
 

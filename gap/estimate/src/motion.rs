@@ -8,6 +8,7 @@
 //! | `sensors.rs` | lagging channels: filters of the measured quantities |
 //! | `timeline.rs` | the order of steps and samples |
 //! | `transition.rs` | one step and its transition matrix; step control |
+//! | `unfiltered.rs` | the motion alone, along a recording |
 
 pub(crate) mod closure;
 pub(crate) mod command;
@@ -15,3 +16,4 @@ pub(crate) mod plant;
 mod sensors;
 pub(crate) mod timeline;
 pub(crate) mod transition;
+pub(crate) mod unfiltered;

@@ -1,4 +1,4 @@
-//! Smoothing: derivatives of noisy samples with their covariance.
+//! Smoothing: derivatives of noisy samples with their standard deviations.
 //!
 //! | file | idea |
 //! |---|---|
@@ -10,7 +10,7 @@
 
 pub mod angle;
 pub mod noise;
-pub mod regression_spline;
+pub(crate) mod regression_spline;
 pub mod samples;
 pub mod savitzky_golay;
 pub mod window;

@@ -6,12 +6,12 @@ use appell_spec::Mechanism;
 
 use crate::channel::{Channel, Measured, Role};
 use crate::clock::Sampling;
-use crate::frame::{Frame, Source};
-use crate::limits::{MAX_NUMBERS, MAX_RUNS, MIN_ROWS};
-use crate::stretches;
+use crate::frame::Frame;
+use crate::limits::{MAX_RUNS, MIN_ROWS};
 use crate::time::Stated;
 use crate::{
-    DataError, DataSet, Finding, FindingKind, Parameter, Part, Reading, Run, Spec, noise, run,
+    DataError, DataSet, Finding, FindingKind, Logged, Parameter, Part, Reading, Run, Spec, run,
+    stretches,
 };
 
 /// Held-out fraction: the last third of several runs, or of one.
@@ -22,17 +22,15 @@ const APART: f64 = 1.0;
 /// Reads CSV files whose columns have the names and units of the spec. The last third of the files is
 /// held out; of a single file, the last third after a gap of one second.
 pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
-    let sources: Vec<Source<'_>> = files.iter().cloned().map(Source::File).collect();
-    assemble(spec, &sources)
+    assemble(spec, files.iter().cloned().map(Logged::File).collect())
 }
 
 /// The same of runs in memory.
 pub fn read_bare_frames(spec: Spec, frames: &[Frame]) -> Result<DataSet, DataError> {
-    let sources: Vec<Source<'_>> = frames.iter().map(Source::Frame).collect();
-    assemble(spec, &sources)
+    assemble(spec, frames.iter().map(Logged::Frame).collect())
 }
 
-fn assemble(spec: Spec, files: &[Source<'_>]) -> Result<DataSet, DataError> {
+fn assemble(spec: Spec, files: Vec<Logged<'_>>) -> Result<DataSet, DataError> {
     let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
     let Some(first) = files.first() else {
         return Err(DataError::whole(spec.file, "there is no recording"));
@@ -51,43 +49,26 @@ fn assemble(spec: Spec, files: &[Source<'_>]) -> Result<DataSet, DataError> {
         );
         return Err(DataError::whole(first.name(), message));
     }
-    let held_out = match files.len() {
+    let count = files.len();
+    let held_out = match count {
         1 => 0,
         count => (count / HELD_OUT).max(1),
     };
-    let (mut runs, mut findings, mut errors) = (Vec::new(), Vec::new(), Vec::new());
-    let mut budget = MAX_NUMBERS;
-    for (index, source) in files.iter().enumerate() {
-        let part = if index + held_out < files.len() {
-            Part::Fit
-        } else {
-            Part::Test
-        };
-        match source.read(&Stated::default(), &channels, &mut budget) {
-            Ok(table) => {
-                runs.push(run::read(
-                    source.name(),
-                    part,
-                    table,
-                    &channels,
-                    &mut findings,
-                ));
-            }
-            Err(error) => errors.push(error),
-        }
-    }
-    if !errors.is_empty() {
-        return Err(DataError::several(errors));
-    }
+    let sources = files.into_iter().enumerate().map(|(index, source)| {
+        let is_fitted = index + held_out < count;
+        let part = if is_fitted { Part::Fit } else { Part::Test };
+        (source.name(), part, Some((source, None)))
+    });
+    let mut findings = Vec::new();
+    let mut runs = run::read_all(sources, &Stated::default(), &channels, &mut findings)?;
     if held_out > 0 {
-        let message = format!("the last {held_out} of {} runs are held out", files.len());
+        let message = format!("the last {held_out} of {count} runs are held out");
         findings.push(Finding::new(FindingKind::Split, message));
     } else {
         split(&mut runs, &mut findings);
     }
-    let runs = stretches::uninterrupted(runs, &channels, &mut findings);
     let own = mechanism.parameters.iter();
-    let mut set = DataSet {
+    let set = DataSet {
         reading: Reading::default(),
         parameters: own.map(Parameter::stated).collect(),
         spec,
@@ -98,23 +79,14 @@ fn assemble(spec: Spec, files: &[Source<'_>]) -> Result<DataSet, DataError> {
         runs,
         findings,
     };
-    noise::find(&mut set);
-    set.tell_what_lacks();
-    set.tell_smooth_inputs();
-    set.findings.sort_by_key(Finding::order);
-    Ok(set)
+    Ok(set.judged())
 }
 
 /// The columns with names of the spec.
 fn channels(header: &[String], mechanism: &Mechanism) -> Vec<Channel> {
     let known = header.iter().filter_map(|column| {
-        let input = mechanism
-            .inputs
-            .iter()
-            .position(|i| i.label.name == *column);
-        let role = Measured::named(column, mechanism)
-            .map(Role::Measures)
-            .or(input.map(Role::Input))?;
+        let measured = Measured::named(column, mechanism).map(Role::Measures);
+        let role = measured.or_else(|| Role::input(column, mechanism))?;
         let unit = role.label(mechanism)?.unit.clone();
         Some(Channel::new(column, role, unit, None))
     });
@@ -140,18 +112,10 @@ fn split(runs: &mut Vec<Run>, findings: &mut Vec<Finding>) {
     );
     findings.push(Finding::new(FindingKind::Split, message));
     let piece = |rows: std::ops::Range<usize>, part| Run {
-        name: run.name.clone(),
         part,
         sampling: Sampling::of(&run.times[rows.clone()]),
-        times: run.times[rows.clone()].to_vec(),
-        values: run
-            .values
-            .iter()
-            .map(|values| values[rows.clone()].to_vec())
-            .collect(),
         earlier: Vec::new(),
-        between: Vec::new(),
-        differences: run.differences.clone(),
+        ..stretches::cut(run, rows)
     };
     *runs = vec![
         piece(0..fitted, Part::Fit),

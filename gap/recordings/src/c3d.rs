@@ -196,8 +196,11 @@ impl<'b> File<'b> {
     }
 
     /// The labels of a group, which goes on in `LABELS2` and so forth.
-    fn labels(&self, names: [Name; 3]) -> Vec<String> {
-        let all = names.into_iter().filter_map(|name| self.parameter(name));
+    fn labels(&self, group: &'static str) -> Vec<String> {
+        let names = ["LABELS", "LABELS2", "LABELS3"];
+        let all = names
+            .into_iter()
+            .filter_map(|name| self.parameter((group, name)));
         all.flat_map(|parameter| {
             let (length, count) = match parameter.sizes[..] {
                 [length, count] if parameter.kind == -1 => (length, count),
@@ -244,7 +247,6 @@ impl<'b> File<'b> {
             names: vec![TIME.to_owned()],
             values: vec![Vec::new()],
             clock: OwnClock::Column,
-            findings: Vec::new(),
         };
         let mut left = budget;
         let mut add = |name: String, value: &dyn Fn(usize) -> f64| {
@@ -262,11 +264,7 @@ impl<'b> File<'b> {
             own.cloned()
                 .unwrap_or_else(|| format!("{what}{}", index + 1))
         };
-        let labels = self.labels([
-            ("POINT", "LABELS"),
-            ("POINT", "LABELS2"),
-            ("POINT", "LABELS3"),
-        ]);
+        let labels = self.labels("POINT");
         let unit = if self.is_float() { 1.0 } else { self.scale };
         for point in 0..self.points {
             let label = named(&labels, point, "point");
@@ -279,11 +277,7 @@ impl<'b> File<'b> {
                 add(format!("{label}.{letter}"), &value)?;
             }
         }
-        let labels = self.labels([
-            ("ANALOG", "LABELS"),
-            ("ANALOG", "LABELS2"),
-            ("ANALOG", "LABELS3"),
-        ]);
+        let labels = self.labels("ANALOG");
         let general = self.number(("ANALOG", "GEN_SCALE"), 0).unwrap_or(1.0);
         for channel in 0..self.samples / self.of_each.max(1) {
             let offset = self.number(("ANALOG", "OFFSET"), channel).unwrap_or(0.0);

@@ -58,23 +58,21 @@ pub enum Measured {
 }
 
 impl Measured {
+    /// All measurable quantities, with their labels.
+    fn all(mechanism: &Mechanism) -> impl Iterator<Item = (Self, &Label)> {
+        let coordinates = mechanism.coordinates.iter().enumerate();
+        let speeds = mechanism.pseudo_velocities.iter().enumerate();
+        let outputs = mechanism.outputs.iter().enumerate();
+        coordinates
+            .map(|(i, q)| (Self::Coordinate(i), &q.label))
+            .chain(speeds.map(|(i, w)| (Self::PseudoVelocity(i), &w.label)))
+            .chain(outputs.map(|(i, y)| (Self::Output(i), &y.label)))
+    }
+
     /// The quantity of a name.
     pub(crate) fn named(name: &str, mechanism: &Mechanism) -> Option<Self> {
-        let coordinate = mechanism.coordinates.iter();
-        let speed = mechanism.pseudo_velocities.iter();
-        let output = mechanism.outputs.iter();
-        coordinate
-            .map(|q| &q.label.name)
-            .position(|own| own == name)
-            .map(Self::Coordinate)
-            .or_else(|| {
-                let at = speed.map(|w| &w.label.name).position(|own| own == name);
-                at.map(Self::PseudoVelocity)
-            })
-            .or_else(|| {
-                let at = output.map(|y| &y.label.name).position(|own| own == name);
-                at.map(Self::Output)
-            })
+        let mut all = Self::all(mechanism);
+        all.find_map(|(own, label)| (label.name == name).then_some(own))
     }
 
     /// Name, sentence and unit.
@@ -86,17 +84,21 @@ impl Measured {
         }
     }
 
-    /// All measurable quantities.
+    /// The names of all measurable quantities.
     pub(crate) fn names(mechanism: &Mechanism) -> Vec<&str> {
-        let coordinates = mechanism.coordinates.iter().map(|q| &q.label);
-        let speeds = mechanism.pseudo_velocities.iter().map(|w| &w.label);
-        let outputs = mechanism.outputs.iter().map(|y| &y.label);
-        let labels = coordinates.chain(speeds).chain(outputs);
+        let labels = Self::all(mechanism).map(|(_, label)| label);
         labels.map(|label| label.name.as_str()).collect()
     }
 }
 
 impl Role {
+    /// The input of a name.
+    pub(crate) fn input(name: &str, mechanism: &Mechanism) -> Option<Self> {
+        let mut inputs = mechanism.inputs.iter();
+        let place = inputs.position(|input| input.label.name == name);
+        place.map(Self::Input)
+    }
+
     /// Name, sentence and unit of the quantity in the spec.
     pub fn label(self, mechanism: &Mechanism) -> Option<&Label> {
         match self {

@@ -17,7 +17,7 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use crate::channel::Channel;
-use crate::column::{CHANNEL_KEYS, Line, channel};
+use crate::column::{Line, channel, channel_keys};
 use crate::fields::{Fields, Value};
 use crate::named::Named;
 use crate::time::{self, Stated, TIME, may_be_time};
@@ -38,13 +38,8 @@ pub(crate) fn channels(
     columns: Columns<'_>,
 ) -> (Stated, Vec<Channel>) {
     let rate = rate(fields, table);
-    let Some(table) = fields.section(table, "channels") else {
-        if table.get("channels").is_none() {
-            let message = "the section `[channels]` is missing";
-            let help =
-                "write a line for each column, such as x = { measures = \"x\", unit = \"m\" }";
-            fields.tell(Code::MissingSection, message, 0..0, help);
-        }
+    let help = "write a line for each column, such as x = { measures = \"x\", unit = \"m\" }";
+    let Some(table) = fields.needed_section(table, "channels", help) else {
         return (Stated::default(), Vec::new());
     };
     let mut entries: Vec<_> = table.iter().collect();
@@ -87,8 +82,8 @@ fn clock<'e>(
 ) -> Option<(&'e str, &'e Value<'e>)> {
     let is_bare = |value: &Value<'_>| {
         let table = value.get_ref().as_table();
-        let has = |key: &&str| table.is_some_and(|table| table.get(*key).is_some());
-        !CHANNEL_KEYS.iter().chain(&["time"]).any(has)
+        let has = |key: &str| table.is_some_and(|table| table.get(key).is_some());
+        !channel_keys().chain(["time"]).any(has)
     };
     let lines = || {
         entries
@@ -134,12 +129,8 @@ fn is_time(value: &Value<'_>) -> bool {
 
 /// The unit of the times in their line.
 fn unit_of_times(fields: &mut Fields<'_>, name: &str, value: &Value<'_>) -> Option<Unit> {
-    let Some(table) = value.get_ref().as_table() else {
-        fields.wrong_type(value, "a table such as { unit = \"ms\" }");
-        return None;
-    };
-    let is_channel = |key: &&str| table.get(*key).is_some();
-    if CHANNEL_KEYS.iter().any(is_channel) {
+    let table = fields.table(value, "a table such as { unit = \"ms\" }")?;
+    if channel_keys().any(|key| table.get(key).is_some()) {
         let message = format!("`{}` is the time, not a channel", shown(name));
         let help = "remove the line, or state the unit of the times alone: { unit = \"ms\" }";
         fields.tell(Code::ReservedName, message, value.span(), help);

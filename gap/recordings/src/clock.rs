@@ -98,6 +98,20 @@ impl Clock {
     }
 }
 
+/// Differences of neighbouring values.
+pub(crate) fn steps(values: &[f64]) -> Vec<f64> {
+    values.windows(2).map(|pair| pair[1] - pair[0]).collect()
+}
+
+/// The median, of an even number of values the larger one in the middle; zero without values.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
 /// Steps between times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sampling {
@@ -113,13 +127,8 @@ pub struct Sampling {
 
 impl Sampling {
     pub(crate) fn of(times: &[f64]) -> Self {
-        let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let middle = steps.len() / 2;
-        let step = if steps.is_empty() {
-            0.0
-        } else {
-            *steps.select_nth_unstable_by(middle, f64::total_cmp).1
-        };
+        let steps = steps(times);
+        let step = median(steps.clone());
         let gaps = times
             .windows(2)
             .filter(|pair| pair[1] - pair[0] > GAP * step);

@@ -17,25 +17,10 @@ use crate::channel::{Channel, Measured, Role};
 use crate::fields::{Fields, Tolerance, Value};
 use crate::named::Named;
 
-/// Keys of a channel that the times do not have.
-pub(crate) const CHANNEL_KEYS: [&str; 12] = [
-    "measures",
-    "input",
-    "noise_std",
-    "scale_std",
-    "gain_std",
-    "unit_checked",
-    "reversed",
-    "interpolation",
-    "counts_per_turn",
-    "gear",
-    "scale",
-    "zero",
-];
 /// Largest size of one in a column, in SI.
 const MOST_FACTOR: f64 = 1e30;
 /// Keys of a line.
-const LINE_KEYS: [&str; 14] = [
+const KEYS: [&str; 14] = [
     "measures",
     "input",
     "unit",
@@ -51,6 +36,14 @@ const LINE_KEYS: [&str; 14] = [
     "scale",
     "zero",
 ];
+/// Keys of a line that the one of the times has as well.
+const OF_TIMES: [&str; 2] = ["unit", "time"];
+
+/// Keys of a channel that the times do not have.
+pub(crate) fn channel_keys() -> impl Iterator<Item = &'static str> {
+    KEYS.into_iter().filter(|key| !OF_TIMES.contains(key))
+}
+
 /// How an input may run between rows.
 const INTERPOLATIONS: [(&str, Interpolation); 3] = [
     ("hold", Interpolation::Hold),
@@ -94,12 +87,9 @@ pub(crate) fn channel(
         column, value, at, ..
     } = line;
     let at = at.clone();
-    let Some(table) = value.get_ref().as_table() else {
-        let wanted = "a table such as { measures = \"theta\", unit = \"rad\" }";
-        fields.wrong_type(value, wanted);
-        return None;
-    };
-    fields.only(table, &LINE_KEYS);
+    let wanted = "a table such as { measures = \"theta\", unit = \"rad\" }";
+    let table = fields.table(value, wanted)?;
+    fields.only(table, &KEYS);
     fields.flag(table, "time");
     let measures = line.name(fields, table, "measures");
     let input = line.name(fields, table, "input");
@@ -157,27 +147,22 @@ pub(crate) fn channel(
 /// The tolerance of the scale of a sensor, `scale_std`, or of the gain of an actuator, `gain_std`.
 fn tolerance(fields: &mut Fields<'_>, table: &DeTable<'_>, role: Role) -> Option<f64> {
     let keys = [
-        (
-            "scale_std",
-            matches!(role, Role::Measures(_)),
-            "a measured channel has a scale",
-            "`gain_std`",
-        ),
-        (
-            "gain_std",
-            matches!(role, Role::Input(_)),
-            "an input has a gain",
-            "`scale_std`",
-        ),
+        ("scale_std", "a measured channel has a scale", "gain_std"),
+        ("gain_std", "an input has a gain", "scale_std"),
     ];
+    let own = match role {
+        Role::Measures(_) => "scale_std",
+        Role::Input(_) => "gain_std",
+        Role::Recorded => "",
+    };
     let mut stated = None;
-    for (key, belongs, why, other) in keys {
+    for (key, why, other) in keys {
         let Some(value) = table.get(key) else {
             continue;
         };
-        if !belongs {
+        if key != own {
             let message = format!("only {why}");
-            let help = format!("remove `{key}`, or write {other}");
+            let help = format!("remove `{key}`, or write `{other}`");
             fields.tell(Code::NotAllowedHere, message, value.span(), &help);
             continue;
         }
@@ -356,5 +341,5 @@ fn commanded(fields: &mut Fields<'_>, name: &str, at: Span, named: Named<'_>) ->
     if found.is_none() {
         fields.unknown("input", name, at, names());
     }
-    found.map(Role::Input)
+    found
 }

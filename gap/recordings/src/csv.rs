@@ -11,9 +11,8 @@ use appell_spec::{Code, Diagnostic, Report, closest, shown};
 
 use crate::channel::Channel;
 use crate::clock::Clock;
-use crate::finding::listed;
 use crate::limits::{MAX_FILE, MAX_LINE, MAX_MISTAKES};
-use crate::table::{Table, checked, too_many};
+use crate::table::{Table, checked, ignored, too_many};
 use crate::time::{NoTime, Stated, TimeColumn, Times, origin};
 use crate::{DataError, Finding, FindingKind, episode, motive};
 
@@ -25,20 +24,20 @@ pub(crate) fn read(
     episode: Option<u64>,
     budget: &mut usize,
 ) -> Result<Table, DataError> {
-    open(path)?.table(time, channels, episode, budget)
+    let file = CsvFile {
+        rows: open(path)?,
+        mistakes: Vec::new(),
+    };
+    file.table(time, channels, episode, budget)
 }
 
 /// The names of the columns.
 pub(crate) fn header(path: &Path) -> Result<Vec<String>, DataError> {
-    Ok(open(path)?.rows.header)
+    Ok(open(path)?.header)
 }
 
-fn open(path: &Path) -> Result<CsvFile<BufReader<File>>, DataError> {
-    let file = appell_files::open(path, MAX_FILE)?;
-    Ok(CsvFile {
-        rows: Rows::new(path, BufReader::new(file))?,
-        mistakes: Vec::new(),
-    })
+fn open(path: &Path) -> Result<Rows<BufReader<File>>, DataError> {
+    Rows::new(path, BufReader::new(appell_files::open(path, MAX_FILE)?))
 }
 
 /// A CSV file read row by row, with the position of every cell; memory holds one line.
@@ -156,11 +155,14 @@ impl<R: BufRead> CsvFile<R> {
         budget: &mut usize,
     ) -> Result<Table, DataError> {
         let mut findings = Vec::new();
-        let Some(places) = self.places(time, channels, &mut findings) else {
+        let Some((times_at, places)) = self.places(time, channels, &mut findings) else {
             return Err(DataError::several(self.mistakes));
         };
         let of_episodes = match episode {
-            Some(episode) => Some((self.episodes()?, episode)),
+            Some(episode) => Some((
+                episode::column(&self.rows.header, &self.rows.lines.file)?,
+                episode,
+            )),
             None => None,
         };
         let mut start = None;
@@ -186,9 +188,9 @@ impl<R: BufRead> CsvFile<R> {
             {
                 continue;
             }
-            let t = match places.time.times {
+            let t = match times_at.times {
                 Times::Column(index) => {
-                    let (t, scale) = (self.number(index, |t| t), places.time.scale());
+                    let (t, scale) = (self.number(index, |t| t), times_at.scale());
                     if start.is_none() && t.is_finite() {
                         start = Some(origin(t, scale));
                     }
@@ -203,7 +205,7 @@ impl<R: BufRead> CsvFile<R> {
             };
             row += 1;
             read.clear();
-            for (place, channel) in places.channels.iter().zip(channels) {
+            for (place, channel) in places.iter().zip(channels) {
                 read.push(self.number(*place, |number| channel.in_si(number)));
             }
             let lines = &self.rows.lines;
@@ -222,7 +224,7 @@ impl<R: BufRead> CsvFile<R> {
         }
         let file = &*self.rows.lines.file;
         findings.extend(clock.findings(file)?);
-        checked(file, &places.time, times, channels, columns, findings)
+        checked(file, &times_at, times, channels, columns, findings)
     }
 
     /// Columns of the time and of the channels; `None` if one is missing.
@@ -231,7 +233,7 @@ impl<R: BufRead> CsvFile<R> {
         time: &Stated,
         channels: &[Channel],
         findings: &mut Vec<Finding>,
-    ) -> Option<Places> {
+    ) -> Option<(TimeColumn, Vec<usize>)> {
         let header = self.rows.header.clone();
         let line = self.rows.line();
         let time = match time.find(&header, channels) {
@@ -268,25 +270,8 @@ impl<R: BufRead> CsvFile<R> {
         let about = "every run has a column for each line of `[channels]`";
         let channels: Vec<usize> = channels.iter().map(|c| place(&c.column, about)).collect();
         let time = time.filter(|_| self.mistakes.is_empty())?;
-        let is_known =
-            |i: &usize| time.is_in(*i) || channels.contains(i) || episode::is_episode(&header[*i]);
-        let unknown = (0..header.len()).filter(|i| !is_known(i));
-        let unknown: Vec<String> = unknown.map(|i| shown(&header[i])).collect();
-        if !unknown.is_empty() {
-            let message = format!(
-                "columns without a description are ignored: {}",
-                listed(&unknown)
-            );
-            findings.push(Finding::new(FindingKind::UnknownColumn, message));
-        }
-        Some(Places { time, channels })
-    }
-
-    /// The column of the episodes.
-    fn episodes(&self) -> Result<usize, DataError> {
-        let mut header = self.rows.header.iter();
-        let found = header.position(|name| episode::is_episode(name));
-        found.ok_or_else(|| DataError::whole(&*self.rows.lines.file, episode::NONE))
+        findings.extend(ignored(&header, &time, &channels));
+        Some((time, channels))
     }
 
     /// The number in a cell in SI, NaN if it is missing; other contents are reported.
@@ -323,11 +308,6 @@ fn instead(text: &str) -> String {
 
 /// Texts for a missing value, in addition to `nan`.
 const MISSING: [&str; 4] = ["", "na", "n/a", "null"];
-
-struct Places {
-    time: TimeColumn,
-    channels: Vec<usize>,
-}
 
 /// The lines of a file that hold something.
 pub(crate) struct Lines<R> {

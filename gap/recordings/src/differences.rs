@@ -47,22 +47,26 @@ fn tables<'a, 'd>(
     let mut tables = Vec::new();
     let section = fields.section(table, SECTION);
     for (key, value) in section.into_iter().flatten() {
-        match value.get_ref().as_table() {
-            Some(own) => tables.push((key.get_ref().to_string(), key.span(), own)),
-            None => fields.wrong_type(value, "a table such as { payload = { … } }"),
-        }
+        let own = fields.table(value, "a table such as { payload = { … } }");
+        tables.extend(own.map(|own| (key.get_ref().to_string(), key.span(), own)));
     }
     tables
+}
+
+/// The names of the parameters of a table, that of all runs or of one.
+pub(crate) fn parameter_keys(table: &DeTable<'_>) -> Vec<String> {
+    let own = table.get("parameters");
+    let own = own.and_then(|own| own.get_ref().as_table());
+    let keys = own.into_iter().flat_map(DeTable::keys);
+    keys.map(|key| key.get_ref().to_string()).collect()
 }
 
 /// The names of parameters that runs have of their own.
 pub(crate) fn keys(table: &DeTable<'_>) -> Vec<String> {
     let runs = table.get(SECTION).and_then(|own| own.get_ref().as_table());
     let runs = runs.into_iter().flat_map(DeTable::values);
-    let own = runs.filter_map(|run| run.get_ref().as_table()?.get("parameters"));
-    let own = own.filter_map(|own| own.get_ref().as_table());
-    let keys = own.flat_map(DeTable::keys);
-    keys.map(|key| key.get_ref().to_string()).collect()
+    let runs = runs.filter_map(|run| run.get_ref().as_table());
+    runs.flat_map(parameter_keys).collect()
 }
 
 /// The payloads of all runs.
@@ -73,36 +77,27 @@ pub(crate) fn payloads(fields: &mut Fields<'_>, table: &DeTable<'_>) -> Vec<Payl
         let Some(value) = own.get("payload") else {
             continue;
         };
-        let Some(own) = value.get_ref().as_table() else {
-            fields.wrong_type(
-                value,
-                "a table { on = \"hand\", mass = 1.5, at = [0, 0, 0.08] }",
-            );
+        let wanted = "a table { on = \"hand\", mass = 1.5, at = [0, 0, 0.08] }";
+        let Some(own) = fields.table(value, wanted) else {
             continue;
         };
         fields.only(own, &["on", "mass", "at"]);
         let on = fields.string(own, "on");
-        let mass = number(fields, own, "mass", value);
+        let mass = own.get("mass");
+        if mass.is_none() {
+            fields.missing("mass", value.span(), "");
+        }
+        let mass = mass.and_then(|mass| fields.number(mass));
         let at = own
             .get("at")
             .map_or(Some([0.0; 3]), |at| vector(fields, at));
         if on.is_none() && own.get("on").is_none() {
-            let message = "the key `on` is missing";
-            fields.tell(
-                Code::MissingKey,
-                message,
-                value.span(),
-                "name the body that carries the payload",
-            );
+            fields.missing("on", value.span(), "name the body that carries the payload");
         }
         if let Some(mass) = mass.filter(|mass| *mass < 0.0) {
             let message = format!("a payload of {mass} kg");
-            fields.tell(
-                Code::ValueOutsideLimits,
-                message,
-                value.span(),
-                "a mass is not negative",
-            );
+            let help = "a mass is not negative";
+            fields.tell(Code::ValueOutsideLimits, message, value.span(), help);
         } else if let (Some((on, place)), Some(mass), Some(at)) = (on, mass, at) {
             payloads.push(Payload {
                 run,
@@ -114,20 +109,6 @@ pub(crate) fn payloads(fields: &mut Fields<'_>, table: &DeTable<'_>) -> Vec<Payl
         }
     }
     payloads
-}
-
-fn number(
-    fields: &mut Fields<'_>,
-    table: &DeTable<'_>,
-    key: &str,
-    whole: &Value<'_>,
-) -> Option<f64> {
-    let Some(value) = table.get(key) else {
-        let message = format!("the key `{key}` is missing");
-        fields.tell(Code::MissingKey, message, whole.span(), "");
-        return None;
-    };
-    fields.number(value)
 }
 
 fn vector(fields: &mut Fields<'_>, value: &Value<'_>) -> Option<[f64; 3]> {
@@ -242,13 +223,12 @@ pub(crate) fn of_runs(
                 fields.unknown("parameter", key.get_ref(), key.span(), known);
             }
             for (index, one) in found {
-                let label = &named.mechanism.parameters[ParameterId::new(index)];
-                let stated = named.robot.is_some().then(|| parameters[index]);
-                let Some(read) = parameter(fields, value, label, stated, one) else {
+                let Some(read) = parameter(fields, value, named, parameters, (index, one)) else {
                     break;
                 };
+                let own = &named.mechanism.parameters[ParameterId::new(index)];
                 all.entry(run.clone()).or_default().push(Difference {
-                    parameter: label.label.name.clone(),
+                    parameter: own.label.name.clone(),
                     by: read.value - parameters[index].value,
                 });
             }

@@ -28,7 +28,7 @@ use self::text::Content;
 use self::words::Kind;
 use crate::limits::MAX_RUNS;
 use crate::robot::Robot;
-use crate::{DataError, DataSet, FindingKind, Logged, Source, Spec, assemble, episode, manifest};
+use crate::{DataError, DataSet, FindingKind, Logged, Spec, assemble, episode, manifest};
 
 /// What a description is drafted from.
 pub struct Draft<'d> {
@@ -123,13 +123,8 @@ impl Draft<'_> {
         assemble(manifest, |name| {
             let (file, episodes) = episode::split(path.parent()?, name);
             let (_, logged) = self.runs.iter().find(|(own, _)| own == file)?;
-            Some(match (logged, episodes) {
-                (Logged::Frame(frame), _) => Source::Frame(frame),
-                (Logged::File(path), Some(episodes)) => {
-                    Source::Episode(path.clone(), *episodes.start())
-                }
-                (Logged::File(path), None) => Source::File(path.clone()),
-            })
+            let episode = episodes.map(|episodes| *episodes.start());
+            Some((logged.clone(), episode))
         })
     }
 

@@ -3,16 +3,21 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+use crate::DataError;
+
 /// Names of the column with the number of the episode of each row.
 const COLUMNS: [&str; 2] = ["episode_index", "episode"];
-
-/// Why a file has no episodes.
-pub(crate) const NONE: &str =
-    "an episode of the file is asked for, but it has no column `episode_index`";
 
 /// Whether a column has the number of the episode of each row.
 pub(crate) fn is_episode(column: &str) -> bool {
     COLUMNS.contains(&column)
+}
+
+/// The column of the episodes.
+pub(crate) fn column(names: &[String], file: &str) -> Result<usize, DataError> {
+    let found = names.iter().position(|name| is_episode(name));
+    let message = "an episode of the file is asked for, but it has no column `episode_index`";
+    found.ok_or_else(|| DataError::whole(file, message))
 }
 
 /// The episode that a cell names.

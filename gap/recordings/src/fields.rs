@@ -81,11 +81,40 @@ impl<'t> Fields<'t> {
         name: &str,
     ) -> Option<&'a DeTable<'d>> {
         let value = table.get(name)?;
-        let inner = value.get_ref().as_table();
-        if inner.is_none() {
-            self.wrong_type(value, &format!("a table `[{name}]`"));
+        self.table(value, &format!("a table `[{name}]`"))
+    }
+
+    /// The table of a section that has to be there.
+    pub(crate) fn needed_section<'a, 'd>(
+        &mut self,
+        table: &'a DeTable<'d>,
+        name: &str,
+        help: &str,
+    ) -> Option<&'a DeTable<'d>> {
+        if table.get(name).is_none() {
+            let message = format!("the section `[{name}]` is missing");
+            self.tell(Code::MissingSection, message, 0..0, help);
         }
-        inner
+        self.section(table, name)
+    }
+
+    /// A value that is a table.
+    pub(crate) fn table<'a, 'd>(
+        &mut self,
+        value: &'a Value<'d>,
+        wanted: &str,
+    ) -> Option<&'a DeTable<'d>> {
+        let table = value.get_ref().as_table();
+        if table.is_none() {
+            self.wrong_type(value, wanted);
+        }
+        table
+    }
+
+    /// Reports that a key is missing.
+    pub(crate) fn missing(&mut self, key: &str, at: Span, help: &str) {
+        let message = format!("the key `{key}` is missing");
+        self.tell(Code::MissingKey, message, at, help);
     }
 
     /// Reports unknown keys.

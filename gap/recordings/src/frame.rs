@@ -19,12 +19,16 @@ pub struct Frame {
 }
 
 /// Where a recording is.
+#[derive(Clone)]
 pub enum Logged<'f> {
     /// In a file.
     File(PathBuf),
     /// In memory.
     Frame(&'f Frame),
 }
+
+/// Where a run comes from, and which episode of a file it is.
+pub(crate) type Source<'s> = (Logged<'s>, Option<u64>);
 
 impl Logged<'_> {
     /// The name in messages.
@@ -34,30 +38,11 @@ impl Logged<'_> {
             Self::Frame(frame) => frame.name.clone(),
         }
     }
-}
-
-/// Where a run comes from.
-pub(crate) enum Source<'s> {
-    File(PathBuf),
-    /// One episode of a file.
-    Episode(PathBuf, u64),
-    Frame(&'s Frame),
-}
-
-impl Source<'_> {
-    /// The name in messages.
-    pub(crate) fn name(&self) -> String {
-        match self {
-            Self::File(path) => path.to_string_lossy().into_owned(),
-            Self::Episode(path, episode) => format!("{}#{episode}", path.to_string_lossy()),
-            Self::Frame(frame) => frame.name.clone(),
-        }
-    }
 
     /// The names of the columns.
     pub(crate) fn header(&self) -> Result<Vec<String>, DataError> {
         match self {
-            Self::File(path) | Self::Episode(path, _) => format::header(path),
+            Self::File(path) => format::header(path),
             Self::Frame(frame) => Ok(frame.columns.clone()),
         }
     }
@@ -67,19 +52,16 @@ impl Source<'_> {
         &self,
         time: &Stated,
         channels: &[Channel],
+        episode: Option<u64>,
         budget: &mut usize,
     ) -> Result<Table, DataError> {
         match self {
-            Self::File(path) => format::read(path, time, channels, None, budget),
-            Self::Episode(path, episode) => {
-                format::read(path, time, channels, Some(*episode), budget)
-            }
+            Self::File(path) => format::read(path, time, channels, episode, budget),
             Self::Frame(frame) => {
                 let columns = Columns {
                     names: frame.columns.clone(),
                     values: frame.values.clone(),
                     clock: OwnClock::None,
-                    findings: Vec::new(),
                 };
                 columns.table(&frame.name, time, channels, None, budget)
             }

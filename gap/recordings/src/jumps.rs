@@ -42,13 +42,14 @@ pub(crate) fn wrapped(values: &mut [f64], turn: f64) -> Option<Jumps> {
 /// Steps far larger than those around them: no motion, but a dead zone, a turn of another size, or a fault.
 pub(crate) fn others(values: &[f64]) -> Option<Jumps> {
     let steps: Vec<(usize, f64)> = steps(values).collect();
-    let mut sizes: Vec<f64> = steps.iter().map(|(_, step)| step.abs()).collect();
+    let sizes: Vec<f64> = steps.iter().map(|(_, step)| step.abs()).collect();
     if sizes.len() <= 2 * AROUND {
         return None;
     }
     let place = sizes.len() * 9 / 10;
-    let usual = *sizes.select_nth_unstable_by(place, f64::total_cmp).1;
-    let sizes: Vec<f64> = steps.iter().map(|(_, step)| step.abs()).collect();
+    let usual = *(sizes.clone())
+        .select_nth_unstable_by(place, f64::total_cmp)
+        .1;
     let smallest = sizes.iter().copied().filter(|size| *size > 0.0);
     let smallest = smallest.fold(f64::INFINITY, f64::min);
     let [low, high] = ends(values);

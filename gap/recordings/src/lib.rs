@@ -126,11 +126,8 @@ pub fn read(
     let manifest = manifest::read(&file, &text, library, instead, &columns)?;
     assemble(manifest, |name| {
         let (file, episodes) = episode::split(folder, name);
-        let path = folder.join(file);
-        Some(match episodes {
-            Some(episodes) => Source::Episode(path, *episodes.start()),
-            None => Source::File(path),
-        })
+        let episode = episodes.map(|episodes| *episodes.start());
+        Some((Logged::File(folder.join(file)), episode))
     })
 }
 
@@ -146,7 +143,7 @@ pub fn read_frames(
     let frame = |name: &str| frames.iter().find(|frame| frame.name == name);
     let columns = |run: &str| frame(run).map(|frame| frame.columns.clone());
     let manifest = manifest::read(file, text, library, instead, &columns)?;
-    assemble(manifest, |name| frame(name).map(Source::Frame))
+    assemble(manifest, |name| Some((Logged::Frame(frame(name)?), None)))
 }
 
 /// The data set of a description, with the source of each run.
@@ -166,30 +163,18 @@ fn assemble<'s>(
         mut differences,
     } = manifest;
     let mut findings = Vec::new();
-    let mut budget = limits::MAX_NUMBERS;
-    let mut read_runs = Vec::new();
-    let mut errors = Vec::new();
-    for (name, part) in runs {
-        let table = source(&name)
-            .ok_or_else(|| DataError::whole(&*name, "no run of this name was given"))
-            .and_then(|source| source.read(&time, &channels, &mut budget));
-        match table {
-            Ok(table) => {
-                let differences = differences.remove(&name).unwrap_or_default();
-                let run = run::read(name, part, table, &channels, &mut findings);
-                read_runs.push(Run { differences, ..run });
-            }
-            Err(error) => errors.push(error),
-        }
-    }
-    if !errors.is_empty() {
-        return Err(DataError::several(errors));
+    let sources = runs.into_iter().map(|(name, part)| {
+        let source = source(&name);
+        (name, part, source)
+    });
+    let mut runs = run::read_all(sources, &time, &channels, &mut findings)?;
+    for run in &mut runs {
+        run.differences = differences.remove(&run.name).unwrap_or_default();
     }
     if let Some(robot) = &robot {
-        robot.drive(&mut read_runs, &mut channels, &mechanism);
+        robot.drive(&mut runs, &mut channels, &mechanism);
     }
-    let runs = stretches::uninterrupted(read_runs, &channels, &mut findings);
-    let mut set = DataSet {
+    let set = DataSet {
         reading: Reading::default(),
         spec,
         robot,
@@ -200,9 +185,5 @@ fn assemble<'s>(
         runs,
         findings,
     };
-    noise::find(&mut set);
-    set.tell_what_lacks();
-    set.tell_smooth_inputs();
-    set.findings.sort_by_key(Finding::order);
-    Ok(set)
+    Ok(set.judged())
 }

@@ -72,6 +72,9 @@ const KEYS: &[&str] = &[
     differences::SECTION,
 ];
 
+/// Help where the mechanism is not known.
+const NAME_ONE: &str = "name a shipped mechanism, or the path of a spec relative to this file";
+
 /// Reads a description; `instead` replaces the mechanism that it names. `columns` are those of a run.
 pub(crate) fn read(
     path: &Path,
@@ -92,9 +95,7 @@ pub(crate) fn read(
         (Some(spec), _) => Some(spec),
         (None, Some((name, at))) => find(&name, at, path, library, &mut fields)?,
         (None, None) => {
-            let message = "the key `mechanism` is missing";
-            let help = "name a shipped mechanism, or the path of a spec relative to this file";
-            fields.tell(Code::MissingKey, message, 0..0, help);
+            fields.missing("mechanism", 0..0, NAME_ONE);
             None
         }
     };
@@ -102,7 +103,7 @@ pub(crate) fn read(
         return Err(fields.report().into());
     };
     let options = robot::options(&mut fields, table);
-    let mut keys = parameter_keys(table);
+    let mut keys = differences::parameter_keys(table);
     keys.extend(differences::keys(table));
     let robot = Robot::read(Path::new(&spec.file), &spec.text, keys, &options)?;
     let (spec, robot) = match robot {
@@ -151,15 +152,6 @@ fn first_run(table: &DeTable<'_>) -> Option<String> {
     list.get_ref().as_str().map(str::to_owned)
 }
 
-/// The keys of `[parameters]`.
-fn parameter_keys(table: &DeTable<'_>) -> Vec<String> {
-    let section = table
-        .get("parameters")
-        .and_then(|own| own.get_ref().as_table());
-    let keys = section.into_iter().flat_map(DeTable::keys);
-    keys.map(|key| key.get_ref().to_string()).collect()
-}
-
 /// The spec of a name, or of a path relative to the description.
 fn find(
     name: &str,
@@ -186,9 +178,7 @@ fn find(
         }));
     }
     let names = || library.iter().map(|(name, _)| *name);
-    let help = did_you_mean(name, names(), || {
-        "name a shipped mechanism, or the path of a spec relative to this file".to_owned()
-    });
+    let help = did_you_mean(name, names(), || NAME_ONE.to_owned());
     let message = format!("there is no mechanism and no file `{}`", shown(name));
     fields.tell(Code::UnknownReference, message, at, &help);
     Ok(None)
@@ -196,12 +186,8 @@ fn find(
 
 /// The files of the runs, those to fit first.
 fn runs(fields: &mut Fields<'_>, table: &DeTable<'_>, folder: &Path) -> Vec<(String, Part)> {
-    let Some(table) = fields.section(table, "runs") else {
-        if table.get("runs").is_none() {
-            let message = "the section `[runs]` is missing";
-            let help = "write fit = [\"run1.csv\"] and test = [\"run2.csv\"]";
-            fields.tell(Code::MissingSection, message, 0..0, help);
-        }
+    let help = "write fit = [\"run1.csv\"] and test = [\"run2.csv\"]";
+    let Some(table) = fields.needed_section(table, "runs", help) else {
         return Vec::new();
     };
     fields.only(table, &["fit", "test"]);

@@ -6,9 +6,9 @@
 //! message are missing. `t` is in s since the first message, by the clock of the logger.
 
 mod cdr;
+mod names;
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::path::Path;
 
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
@@ -16,6 +16,7 @@ use mcap::{Message, MessageStream};
 use serde_json::Value;
 
 use self::cdr::Definitions;
+use self::names::{LONGEST, NAMES, Names};
 use crate::DataError;
 use crate::limits::MAX_BYTES;
 use crate::table::{Columns, OwnClock, Wanted, too_many};
@@ -90,8 +91,8 @@ impl Log {
             "json" => {
                 let value: Value =
                     serde_json::from_slice(&message.data).map_err(|_| "is not JSON")?;
-                let mut paths = [channel.topic.clone(), channel.topic.clone()];
-                flatten(&mut paths, &value, &[], &mut tell);
+                let mut names = Names::of(&channel.topic, &mut tell);
+                flatten(&mut names, &value, &[]);
             }
             "cdr" => {
                 let definitions = self.definitions.entry(channel.id).or_insert_with(|| {
@@ -146,67 +147,39 @@ impl Log {
             names,
             values: columns,
             clock: OwnClock::Column,
-            findings: Vec::new(),
         })
     }
 }
 
-/// Every number of a JSON value with the path that leads to it, and the path with names of joints for numbers in lists.
-/// JSON that was read is at most 128 deep.
-fn flatten(
-    paths: &mut [String; 2],
-    value: &Value,
-    names: &[String],
-    tell: &mut dyn FnMut(&str, f64),
-) {
-    let lengths = [paths[0].len(), paths[1].len()];
-    let mut tell_both = |paths: &[String; 2], value: f64| {
-        tell(&paths[0], value);
-        if paths[1] != paths[0] {
-            tell(&paths[1], value);
-        }
-    };
+/// Tells every number of a JSON value; `joints` are the names of numbers in lists. JSON that was read is at most 128 deep.
+fn flatten(names: &mut Names<'_>, value: &Value, joints: &[String]) {
+    let here = names.place();
     match value {
-        Value::Number(number) => tell_both(paths, number.as_f64().unwrap_or(f64::NAN)),
-        Value::Bool(value) => tell_both(paths, f64::from(u8::from(*value))),
+        Value::Number(number) => names.tell(number.as_f64().unwrap_or(f64::NAN)),
+        Value::Bool(value) => names.tell(f64::from(u8::from(*value))),
         Value::Array(values) => {
             for (index, value) in values.iter().enumerate() {
-                let name = names.get(index).filter(|_| names.len() == values.len());
-                // Writing to a string cannot fail.
-                let _ = write!(paths[0], "[{index}]");
-                let _ = match name {
-                    Some(name) => write!(paths[1], "[{name}]"),
-                    None => write!(paths[1], "[{index}]"),
-                };
-                flatten(paths, value, names, tell);
-                cut(paths, lengths);
+                names.element(index, values.len(), joints);
+                flatten(names, value, joints);
+                names.back(here);
             }
         }
         Value::Object(fields) => {
-            let own = cdr::NAMES.iter().find_map(|key| texts(fields.get(*key)?));
-            let names = own.as_deref().unwrap_or(names);
+            let own = NAMES.iter().find_map(|key| texts(fields.get(*key)?));
+            let joints = own.as_deref().unwrap_or(joints);
             for (name, value) in fields {
-                for path in &mut *paths {
-                    path.push('.');
-                    path.push_str(name);
-                }
-                flatten(paths, value, names, tell);
-                cut(paths, lengths);
+                names.field(name);
+                flatten(names, value, joints);
+                names.back(here);
             }
         }
         Value::Null | Value::String(_) => {}
     }
 }
 
-fn cut(paths: &mut [String; 2], lengths: [usize; 2]) {
-    for (path, length) in paths.iter_mut().zip(lengths) {
-        path.truncate(length);
-    }
-}
-
 /// The texts of a list of nothing else.
 fn texts(value: &Value) -> Option<Vec<String>> {
     let texts = value.as_array()?.iter();
-    let name = |text: &Value| Some(text.as_str()?.chars().take(cdr::LONGEST_NAME).collect());
+    let name = |text: &Value| Some(text.as_str()?.chars().take(LONGEST).collect());
     texts.map(name).collect()
 }

@@ -2,7 +2,7 @@
 
 use appell_spec::Mechanism;
 
-use crate::channel::Measured;
+use crate::channel::{Measured, Role};
 use crate::fields::Value;
 use crate::robot::Robot;
 
@@ -47,10 +47,9 @@ impl Named<'_> {
     }
 
     /// The input of a name.
-    pub(crate) fn commanded(self, name: &str) -> Option<usize> {
+    pub(crate) fn commanded(self, name: &str) -> Option<Role> {
         let own = self.robot.and_then(|robot| robot.input(name));
-        let mut inputs = self.mechanism.inputs.iter();
-        inputs.position(|input| input.label.name == own.unwrap_or(name))
+        Role::input(own.unwrap_or(name), self.mechanism)
     }
 }
 

@@ -36,7 +36,7 @@ pub(crate) fn find(set: &mut DataSet) {
             .iter()
             .filter_map(|run| Samples::new(&run.times, &run.values[index]).ok())
             .collect();
-        let (noise, finding) = judged(channel, level(&records), quantum(values()));
+        let (noise, finding) = judged(channel, &records, quantum(values()));
         channel.noise = noise;
         if let Some((kind, message)) = finding {
             tell(kind, message);
@@ -67,40 +67,34 @@ struct Level {
     bound: bool,
 }
 
-fn level(records: &[Samples<'_>]) -> Option<Level> {
+/// The level of samples of a sensor whose resolution alone has the noise `floor`.
+fn level(records: &[Samples<'_>], floor: f64) -> Option<Level> {
     let differences = from_differences(records)?;
-    let at_rest = (!differences.settled)
-        .then(|| at_standstill(records))
-        .flatten();
-    Some(match at_rest {
-        Some(std) => Level {
-            std,
-            source: NoiseSource::Standstill,
-            bound: false,
-        },
-        None => Level {
-            std: differences.std,
-            source: NoiseSource::Differences,
-            bound: !differences.settled,
-        },
-    })
+    let is_bound = !differences.settled;
+    let at_rest = is_bound.then(|| at_standstill(records)).flatten();
+    let (std, source, bound) = match at_rest {
+        Some(std) => (std, NoiseSource::Standstill, false),
+        None => (differences.std, NoiseSource::Differences, is_bound),
+    };
+    let (std, source, bound) = if std < floor {
+        (floor, NoiseSource::Quantisation, false)
+    } else {
+        (std, source, bound)
+    };
+    Some(Level { std, source, bound })
 }
 
 type Told = Option<(FindingKind, String)>;
 
 /// The level that is used, from the stated one, the estimate and the resolution of the sensor.
-fn judged(channel: &Channel, level: Option<Level>, quantum: Option<f64>) -> (Option<Noise>, Told) {
+fn judged(
+    channel: &Channel,
+    records: &[Samples<'_>],
+    quantum: Option<f64>,
+) -> (Option<Noise>, Told) {
     let floor = quantum.map_or(0.0, |step| step / 12f64.sqrt());
+    let level = level(records, floor);
     let stated = channel.stated_noise.filter(|std| *std > 0.0);
-    let level = level.map(|level| {
-        if level.std < floor {
-            let (std, source) = (floor, NoiseSource::Quantisation);
-            let bound = false;
-            Level { std, source, bound }
-        } else {
-            level
-        }
-    });
     let noise = |std, source, found| {
         (std > 0.0).then_some(Noise {
             std,

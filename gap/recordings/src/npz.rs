@@ -4,7 +4,6 @@
 //! An array of one dimension is a column of its name, one of two dimensions the columns `name[0]`, `name[1]` …. Other
 //! arrays, of text or objects, are ignored.
 
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -42,29 +41,32 @@ pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Col
         names: Vec::new(),
         values: Vec::new(),
         clock: OwnClock::None,
-        findings: Vec::new(),
     };
     let mut left = budget;
     for index in 0..archive.len() {
-        let (name, array) = array(&mut archive, index, wanted, &mut left).map_err(
-            |(name, problem)| match problem {
-                Problem::TooMany => too_many(format!("{place}: {name}")),
-                Problem::Damaged(what) => whole(format!("the array `{name}` {what}")),
-            },
-        )?;
+        let number = format!("number {}", index + 1);
+        let damaged = |name: &str, what: String| whole(format!("the array `{name}` {what}"));
+        let mut entry = archive
+            .by_index(index)
+            .map_err(|error| damaged(&number, format!("cannot be read: {error}")))?;
+        let name = entry.name().ok();
+        let name = name.and_then(|name| Some(name.strip_suffix(".npy")?.to_owned()));
+        let Some(name) = name else { continue };
+        let array = numbers(&mut entry, &name, wanted, &mut left);
+        let array = array.map_err(|problem| match problem {
+            Problem::TooMany => too_many(format!("{place}: {name}")),
+            Problem::Damaged(what) => damaged(&name, what),
+        })?;
         for (column, values) in array {
-            columns.names.push(match column {
-                Some(column) => format!("{name}[{column}]"),
-                None => name.clone(),
-            });
+            columns.names.push(column);
             columns.values.push(values);
         }
     }
     Ok(columns)
 }
 
-/// Columns of an array by their numbers; `None` is that of an array of one dimension.
-type Values = Vec<(Option<usize>, Vec<f64>)>;
+/// Names and values of columns.
+type Values = Vec<(String, Vec<f64>)>;
 
 enum Problem {
     TooMany,
@@ -77,30 +79,7 @@ impl From<std::io::Error> for Problem {
     }
 }
 
-/// The name of an array and its wanted columns; none if it is of other things than numbers.
-fn array(
-    archive: &mut ZipArchive<BufReader<File>>,
-    index: usize,
-    wanted: Wanted<'_>,
-    left: &mut usize,
-) -> Result<(String, Values), (String, Problem)> {
-    let number = || format!("number {}", index + 1);
-    let entry = archive.by_index(index);
-    let mut entry = entry.map_err(|error| {
-        let what = format!("cannot be read: {error}");
-        (number(), Problem::Damaged(what))
-    })?;
-    let name = entry.name().ok();
-    let name = name.and_then(|name| Some(name.strip_suffix(".npy")?.to_owned()));
-    let Some(name) = name else {
-        return Ok((number(), Vec::new()));
-    };
-    match numbers(&mut entry, &name, wanted, left) {
-        Ok(values) => Ok((name, values)),
-        Err(problem) => Err((name, problem)),
-    }
-}
-
+/// The columns of an array, with the values of those that are wanted; none if it is of other things than numbers.
 fn numbers(
     from: &mut impl Read,
     name: &str,
@@ -122,15 +101,17 @@ fn numbers(
         let what = format!("has {width} columns, and at most {MOST_COLUMNS} are read");
         return Err(Problem::Damaged(what));
     }
-    let column = |index: usize| is_table.then_some(index);
-    let is_wanted = |index: usize| match column(index) {
-        Some(index) => wanted(&format!("{name}[{index}]")),
-        None => wanted(name),
+    let column = |index: usize| {
+        if is_table {
+            format!("{name}[{index}]")
+        } else {
+            name.to_owned()
+        }
     };
-    let is_wanted: Vec<bool> = (0..width).map(is_wanted).collect();
     let mut values: Values = (0..width)
         .map(|index| (column(index), Vec::new()))
         .collect();
+    let is_wanted: Vec<bool> = values.iter().map(|(column, _)| wanted(column)).collect();
     let there = is_wanted.iter().filter(|own| **own).count();
     if there == 0 {
         return Ok(values);

@@ -41,31 +41,28 @@ pub(crate) fn parameters(
             }
         }
         for (index, one) in found {
-            let own = &named.mechanism.parameters[ParameterId::new(index)];
-            let stated = named.robot.is_some().then(|| parameters[index]);
-            match parameter(fields, value, own, stated, one) {
-                Some(read) => parameters[index] = read,
-                None => break,
-            }
+            let Some(read) = parameter(fields, value, named, &parameters, (index, one)) else {
+                break;
+            };
+            parameters[index] = read;
         }
     }
     parameters
 }
 
-/// Reads a parameter. One of a robot, `stated` in its file, needs no value; it may be a factor, of a number that is
-/// `one` in SI.
+/// Reads one of the parameters. One of a robot, stated in its file, needs no value; it may be a factor, of a number that
+/// is `one` in SI.
 pub(crate) fn parameter(
     fields: &mut Fields<'_>,
     value: &Value<'_>,
-    own: &appell_spec::mechanism::Parameter,
-    stated: Option<Parameter>,
-    one: f64,
+    named: Named<'_>,
+    parameters: &[Parameter],
+    (index, one): (usize, f64),
 ) -> Option<Parameter> {
-    let Some(table) = value.get_ref().as_table() else {
-        let wanted = "a table such as { value = 1.2, unit = \"kg\", std = 0.03 }";
-        fields.wrong_type(value, wanted);
-        return None;
-    };
+    let own = &named.mechanism.parameters[ParameterId::new(index)];
+    let stated = named.robot.is_some().then(|| parameters[index]);
+    let wanted = "a table such as { value = 1.2, unit = \"kg\", std = 0.03 }";
+    let table = fields.table(value, wanted)?;
     fields.only(table, &["value", "unit", "std"]);
     let is_factor = stated.is_some() && own.label.unit.dimension == Dimension::NONE;
     let quantity = (own.label.name.as_str(), &own.label.unit);
@@ -82,8 +79,7 @@ pub(crate) fn parameter(
         }
         (None, Some(stated)) => stated.value,
         (None, None) => {
-            let message = "the key `value` is missing";
-            fields.tell(Code::MissingKey, message, value.span(), "");
+            fields.missing("value", value.span(), "");
             return None;
         }
     };

@@ -49,7 +49,6 @@ fn columns(file: File, wanted: Wanted<'_>, budget: usize) -> Result<Option<Colum
         names: Vec::new(),
         values: Vec::new(),
         clock: OwnClock::None,
-        findings: Vec::new(),
     };
     let mut stamps = Vec::new();
     let mut left = budget;
@@ -85,7 +84,15 @@ fn columns(file: File, wanted: Wanted<'_>, budget: usize) -> Result<Option<Colum
                     return Ok(None);
                 };
                 left = rest;
-                append(group.get_column_reader(index)?, column, &mut values)?;
+                let reader = group.get_column_reader(index)?;
+                let mut add = |_: &[i16], batch: &[Option<f64>]| {
+                    values.extend(batch.iter().map(|value| value.unwrap_or(f64::NAN)));
+                    Ok(())
+                };
+                if !visit(reader, column, usize::MAX, BATCH, &mut add)? {
+                    let message = format!("the column `{name}` holds no numbers");
+                    return Err(ParquetError::General(message));
+                }
             }
         }
         stamps.push(unit_of_stamps(column));
@@ -118,13 +125,21 @@ fn width(
     column: &ColumnDescriptor,
 ) -> Result<usize> {
     for group in 0..reader.num_row_groups() {
-        let mut first = Lists::default();
+        let mut count = 0;
+        let mut add = |levels: &[i16], values: &[Option<f64>]| {
+            let pairs = levels.iter().zip(values);
+            let own = pairs.filter(|(level, value)| **level > 0 || value.is_some());
+            count += own.count();
+            if count > MOST_COLUMNS {
+                let message = format!("a list has more than {MOST_COLUMNS} numbers");
+                return Err(ParquetError::General(message));
+            }
+            Ok(())
+        };
         let reader = reader.get_row_group(group)?.get_column_reader(index)?;
-        visit(reader, column, 1, &mut |repeated, value| {
-            first.add(repeated, value, None)
-        })?;
-        if first.count > 0 {
-            return Ok(first.count);
+        visit(reader, column, 1, ROWS_OF_LISTS, &mut add)?;
+        if count > 0 {
+            return Ok(count);
         }
     }
     Ok(0)
@@ -132,182 +147,116 @@ fn width(
 
 /// Appends the lists of a group of rows to one column for each of their places.
 fn lists(reader: ColumnReader, column: &ColumnDescriptor, to: &mut [Vec<f64>]) -> Result<()> {
-    let mut lists = Lists::default();
-    let width = to.len();
-    let mut add = |repeated: bool, value: Option<f64>| lists.add(repeated, value, Some(to));
-    visit(reader, column, usize::MAX, &mut add)?;
-    // A list that breaks off ends here.
-    lists.fill(to, width);
-    Ok(())
-}
-
-/// The list that is being read.
-#[derive(Default)]
-struct Lists {
-    /// How many numbers of it there were.
-    count: usize,
-    is_open: bool,
-}
-
-impl Lists {
-    /// The next number of a list, or the first one of the next list.
-    fn add(
-        &mut self,
-        repeated: bool,
-        value: Option<f64>,
-        to: Option<&mut [Vec<f64>]>,
-    ) -> Result<()> {
-        if let Some(to) = to {
-            if !repeated {
-                self.fill(to, to.len());
-                self.count = 0;
+    let (mut count, mut is_open) = (0, false);
+    let mut add = |levels: &[i16], values: &[Option<f64>]| {
+        for (level, value) in levels.iter().zip(values) {
+            let is_repeated = *level > 0;
+            if !is_repeated {
+                fill(to, count, is_open);
+                count = 0;
             }
-            self.is_open = true;
-            if value.is_some() || repeated {
-                let Some(column) = to.get_mut(self.count) else {
-                    let message =
-                        format!("a list has more than the {} numbers of the first", to.len());
+            is_open = true;
+            if value.is_some() || is_repeated {
+                let most = to.len();
+                let Some(column) = to.get_mut(count) else {
+                    let message = format!("a list has more than the {most} numbers of the first");
                     return Err(ParquetError::General(message));
                 };
                 column.push(value.unwrap_or(f64::NAN));
+                count += 1;
             }
-        }
-        self.count += usize::from(value.is_some() || repeated);
-        if self.count > MOST_COLUMNS {
-            let message = format!("a list has more than {MOST_COLUMNS} numbers");
-            return Err(ParquetError::General(message));
         }
         Ok(())
-    }
+    };
+    visit(reader, column, usize::MAX, ROWS_OF_LISTS, &mut add)?;
+    // A list that breaks off ends here.
+    fill(to, count, is_open);
+    Ok(())
+}
 
-    /// Fills a list that is shorter than the first one.
-    fn fill(&mut self, to: &mut [Vec<f64>], width: usize) {
-        if self.is_open {
-            for column in &mut to[self.count.min(width)..] {
-                column.push(f64::NAN);
-            }
+/// Fills a list with fewer numbers than the first one, if one is open.
+fn fill(to: &mut [Vec<f64>], count: usize, is_open: bool) {
+    if is_open {
+        for column in &mut to[count..] {
+            column.push(f64::NAN);
         }
-        self.is_open = false;
     }
 }
 
-/// Passes the numbers of a group of rows, up to a number of rows, each with whether it belongs to the list before.
+/// Takes levels of repetition, above zero for a value of the list before, and as many values, `None` where one is
+/// missing. Columns without lists have no levels.
+type Take<'t> = &'t mut dyn FnMut(&[i16], &[Option<f64>]) -> Result<()>;
+
+/// Passes the numbers of a group of rows on, up to a number of rows, in batches; whether the column holds numbers.
 fn visit(
     reader: ColumnReader,
     column: &ColumnDescriptor,
     rows: usize,
-    see: &mut dyn FnMut(bool, Option<f64>) -> Result<()>,
-) -> Result<()> {
-    let mut to = |repeated: &[i16], values: Vec<Option<f64>>| -> Result<()> {
-        let pairs = repeated.iter().zip(values);
-        pairs
-            .into_iter()
-            .try_for_each(|(level, value)| see(*level > 0, value))
-    };
+    batch: usize,
+    to: Take<'_>,
+) -> Result<bool> {
+    let size = [rows, batch];
     match reader {
-        ColumnReader::BoolColumnReader(reader) => repeated(
+        ColumnReader::BoolColumnReader(reader) => numbers(
             reader,
             column,
-            rows,
+            size,
             |&value| f64::from(u8::from(value)),
-            &mut to,
+            to,
         ),
         ColumnReader::Int32ColumnReader(reader) => {
-            repeated(reader, column, rows, |&value| f64::from(value), &mut to)
+            numbers(reader, column, size, |&value| f64::from(value), to)
         }
         ColumnReader::Int64ColumnReader(reader) => {
-            repeated(reader, column, rows, |&value| value as f64, &mut to)
+            numbers(reader, column, size, |&value| value as f64, to)
         }
         ColumnReader::FloatColumnReader(reader) => {
-            repeated(reader, column, rows, |&value| f64::from(value), &mut to)
+            numbers(reader, column, size, |&value| f64::from(value), to)
         }
         ColumnReader::DoubleColumnReader(reader) => {
-            repeated(reader, column, rows, |&value| value, &mut to)
+            numbers(reader, column, size, |&value| value, to)
         }
-        _ => Ok(()),
-    }
+        _ => return Ok(false),
+    }?;
+    Ok(true)
 }
 
-/// Takes levels of repetition and the values.
-type Take<'t> = &'t mut dyn FnMut(&[i16], Vec<Option<f64>>) -> Result<()>;
-
-/// Levels of repetition with the values, `None` where one is missing.
-fn repeated<T: DataType>(
+/// The numbers of up to `rows` rows, `batch` at once. There is one where the level of definition is that of a value.
+fn numbers<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     column: &ColumnDescriptor,
-    rows: usize,
+    [rows, batch]: [usize; 2],
     number: impl Fn(&T::T) -> f64,
     to: Take<'_>,
 ) -> Result<()> {
     let there = column.max_def_level();
-    let mut left = rows;
+    let (mut defined, mut repeated, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut left, mut found) = (rows, Vec::new());
     while left > 0 {
-        let (mut defined, mut levels, mut values) = (Vec::new(), Vec::new(), Vec::new());
-        let batch = left.min(ROWS_OF_LISTS);
-        let (read, ..) =
-            reader.read_records(batch, Some(&mut defined), Some(&mut levels), &mut values)?;
+        defined.clear();
+        repeated.clear();
+        values.clear();
+        let (read, ..) = reader.read_records(
+            left.min(batch),
+            Some(&mut defined),
+            Some(&mut repeated),
+            &mut values,
+        )?;
         if read == 0 {
             return Ok(());
         }
         left -= read.min(left);
-        let mut values = values.iter().map(&number);
-        let pairs = defined
-            .iter()
-            .map(|&level| (level == there).then(|| values.next()).flatten());
-        to(&levels, pairs.collect())?;
+        let mut numbers = values.iter().map(&number);
+        found.clear();
+        if there == 0 {
+            found.extend(numbers.map(Some));
+        } else {
+            let is_there = defined.iter().map(|&level| level == there);
+            found.extend(is_there.map(|is| is.then(|| numbers.next()).flatten()));
+        }
+        to(&repeated, &found)?;
     }
     Ok(())
-}
-
-/// Appends the numbers of a column of a group of rows.
-fn append(reader: ColumnReader, column: &ColumnDescriptor, to: &mut Vec<f64>) -> Result<()> {
-    match reader {
-        ColumnReader::BoolColumnReader(reader) => {
-            numbers(reader, column, |&value| f64::from(u8::from(value)), to)
-        }
-        ColumnReader::Int32ColumnReader(reader) => {
-            numbers(reader, column, |&value| f64::from(value), to)
-        }
-        ColumnReader::Int64ColumnReader(reader) => {
-            numbers(reader, column, |&value| value as f64, to)
-        }
-        ColumnReader::FloatColumnReader(reader) => {
-            numbers(reader, column, |&value| f64::from(value), to)
-        }
-        ColumnReader::DoubleColumnReader(reader) => numbers(reader, column, |&value| value, to),
-        _ => {
-            let message = format!("the column `{}` holds no numbers", column.path().string());
-            Err(ParquetError::General(message))
-        }
-    }
-}
-
-/// Values where the level of definition is that of a value; NaN elsewhere.
-fn numbers<T: DataType>(
-    mut reader: ColumnReaderImpl<T>,
-    column: &ColumnDescriptor,
-    number: impl Fn(&T::T) -> f64,
-    to: &mut Vec<f64>,
-) -> Result<()> {
-    let there = column.max_def_level();
-    let (mut levels, mut values) = (Vec::new(), Vec::new());
-    loop {
-        levels.clear();
-        values.clear();
-        let (rows, ..) = reader.read_records(BATCH, Some(&mut levels), None, &mut values)?;
-        if rows == 0 {
-            return Ok(());
-        }
-        let mut values = values.iter().map(&number);
-        if there == 0 {
-            to.extend(values);
-        } else {
-            to.extend(levels.iter().map(|&level| {
-                let value = (level == there).then(|| values.next()).flatten();
-                value.unwrap_or(f64::NAN)
-            }));
-        }
-    }
 }
 
 /// The unit of the time stamps of a column in s.

@@ -33,10 +33,7 @@ impl DataSet {
 
 /// Kind of a column for another mechanism.
 fn role(channel: &Channel, from: &Mechanism, to: &Mechanism) -> Role {
-    let input = |name: &str| {
-        let place = to.inputs.iter().position(|input| input.label.name == name);
-        place.map(Role::Input)
-    };
+    let input = |name: &str| Role::input(name, to);
     let measured = |name: &str| Measured::named(name, to).map(Role::Measures);
     let name = |role: Role| {
         role.label(from)

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use appell_files::FileError;
-use appell_robots::{Dictionary, Entry, Failure, Format, Letters, Options};
+use appell_robots::{ActuatorName, Dictionary, Entry, Failure, Format, Letters, Options};
 use appell_spec::mechanism::Interpolation;
 use appell_spec::{Code, Mechanism, shown};
 use toml::de::DeTable;
@@ -138,6 +138,12 @@ impl Robot {
         Some(&actuator.input)
     }
 
+    /// The actuator of an input of the spec.
+    fn actuator_of(&self, input: &str) -> Option<&ActuatorName> {
+        let mut actuators = self.dictionary.actuators.iter();
+        actuators.find(|actuator| actuator.input == input)
+    }
+
     /// Whether an input of the spec is the command of an actuator that is neither a position nor a velocity.
     pub(crate) fn is_ctrl(&self, input: &str) -> bool {
         let mut actuators = self.dictionary.actuators.iter();
@@ -154,8 +160,7 @@ impl Robot {
             let Some(label) = channel.role.label(mechanism) else {
                 continue;
             };
-            let mut actuators = self.dictionary.actuators.iter();
-            let Some(actuator) = actuators.find(|actuator| actuator.input == label.name) else {
+            let Some(actuator) = self.actuator_of(&label.name) else {
                 continue;
             };
             if actuator.lag <= 0.0 && actuator.delay <= 0.0 {
@@ -210,17 +215,13 @@ impl Robot {
     /// The name in the file of a parameter, an input or a coordinate.
     fn name_of(&self, word: &str) -> Option<String> {
         let Dictionary {
-            entries,
-            actuators,
-            joints,
-            ..
+            entries, joints, ..
         } = &self.dictionary;
         let number = entries.iter().find(|entry| entry.parameter == word);
         let number = number.map(|entry| format!("{}.{}", entry.element, entry.attribute));
-        let actuator = || actuators.iter().find(|actuator| actuator.input == word);
         let joint = || joints.iter().find(|joint| joint.coordinate == word);
         number
-            .or_else(|| actuator().map(|actuator| actuator.name.clone()))
+            .or_else(|| self.actuator_of(word).map(|actuator| actuator.name.clone()))
             .or_else(|| joint().map(|joint| joint.name.clone()))
     }
 }

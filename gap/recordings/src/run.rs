@@ -5,15 +5,43 @@ use std::f64::consts::TAU;
 use crate::channel::{Channel, Measured, Role};
 use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind, counted};
-use crate::jumps;
+use crate::frame::Source;
+use crate::limits::MAX_NUMBERS;
 use crate::set::{Part, Run};
 use crate::table::Table;
+use crate::time::Stated;
+use crate::{DataError, jumps};
 
 /// Largest number of successive rows without an input; over a longer dropout the input is unknown.
 const LOST: usize = 5;
 
+/// The runs of a data set from their sources; the errors of all of them.
+pub(crate) fn read_all<'s>(
+    sources: impl Iterator<Item = (String, Part, Option<Source<'s>>)>,
+    time: &Stated,
+    channels: &[Channel],
+    findings: &mut Vec<Finding>,
+) -> Result<Vec<Run>, DataError> {
+    let mut budget = MAX_NUMBERS;
+    let (mut runs, mut errors) = (Vec::new(), Vec::new());
+    for (name, part, source) in sources {
+        let table = source
+            .ok_or_else(|| DataError::whole(&*name, "no run of this name was given"))
+            .and_then(|(logged, episode)| logged.read(time, channels, episode, &mut budget));
+        match table {
+            Ok(table) => runs.push(read(name, part, table, channels, findings)),
+            Err(error) => errors.push(error),
+        }
+    }
+    if errors.is_empty() {
+        Ok(runs)
+    } else {
+        Err(DataError::several(errors))
+    }
+}
+
 /// A run from its table, with dropouts reported, inputs held and angles unwrapped.
-pub(crate) fn read(
+fn read(
     name: String,
     part: Part,
     table: Table,
@@ -34,7 +62,8 @@ pub(crate) fn read(
         if missing > 0 {
             let (rows, all) = (counted(missing, "value"), values.len());
             if matches!(channel.role, Role::Input(_)) {
-                hold(values);
+                let first = values.iter().copied().find(|value| !value.is_nan());
+                hold(values, first.unwrap_or(0.0));
                 let message = format!("{rows} of {all} missing; the value before holds on");
                 tell(FindingKind::HeldInput, message);
             } else {
@@ -103,10 +132,9 @@ fn without_lost_inputs(mut table: Table, channels: &[Channel]) -> Table {
     table
 }
 
-/// Replaces missing values by the previous one; at the beginning by the first one present.
-fn hold(values: &mut [f64]) {
-    let first = values.iter().copied().find(|value| !value.is_nan());
-    let mut last = first.unwrap_or(0.0);
+/// Replaces missing values by the previous one, those at the beginning by `first`.
+pub(crate) fn hold(values: &mut [f64], first: f64) {
+    let mut last = first;
     for value in values {
         if value.is_nan() {
             *value = last;

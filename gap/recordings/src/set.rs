@@ -8,6 +8,7 @@ use crate::channel::{Channel, Role};
 use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind};
 use crate::robot::Robot;
+use crate::{noise, stretches};
 
 /// The text of a spec and its name in messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -166,8 +167,19 @@ impl DataSet {
         self.findings.sort_by_key(Finding::order);
     }
 
+    /// The set with its runs cut at gaps, the noise of its channels, and doubts about it.
+    pub(crate) fn judged(mut self) -> Self {
+        let runs = std::mem::take(&mut self.runs);
+        self.runs = stretches::uninterrupted(runs, &self.channels, &mut self.findings);
+        noise::find(&mut self);
+        self.tell_what_lacks();
+        self.tell_smooth_inputs();
+        self.findings.sort_by_key(Finding::order);
+        self
+    }
+
     /// Inputs without a column, and parameters without a tolerance.
-    pub(crate) fn tell_what_lacks(&mut self) {
+    fn tell_what_lacks(&mut self) {
         for (index, input) in self.mechanism.inputs.iter().enumerate() {
             let recorded = |channel: &Channel| channel.role == Role::Input(index);
             if !self.channels.iter().any(recorded) {

@@ -207,7 +207,8 @@ fn listed(run: &Run, rows: Range<usize>) -> Vec<Row> {
     rows.map(row).collect()
 }
 
-fn cut(run: &Run, rows: Range<usize>) -> Run {
+/// Some rows of a run, with those shortly before them.
+pub(crate) fn cut(run: &Run, rows: Range<usize>) -> Run {
     let values = run.values.iter();
     Run {
         name: run.name.clone(),

@@ -5,10 +5,11 @@ use appell_spec::{closest, shown};
 
 use crate::channel::Channel;
 use crate::clock::{Clock, Sampling};
+use crate::episode::{self, is_episode};
 use crate::finding::{counted, listed};
 use crate::limits::{MAX_NUMBERS, MAX_TIME, MAX_VALUE, MIN_ROWS, MIN_STEP};
 use crate::time::{NoTime, Stated, TIME, TimeColumn, Times, origin};
-use crate::{DataError, Finding, FindingKind, episode, topics};
+use crate::{DataError, Finding, FindingKind, topics};
 
 /// The numbers of a run.
 pub(crate) struct Table {
@@ -28,8 +29,6 @@ pub(crate) struct Columns {
     pub(crate) values: Vec<Vec<f64>>,
     /// The clock of the format itself.
     pub(crate) clock: OwnClock,
-    /// Omitted rows.
-    pub(crate) findings: Vec<Finding>,
 }
 
 /// The times of the rows, as given by a format.
@@ -74,7 +73,7 @@ impl Columns {
 
     /// The columns of the channels in SI, in rows of increasing times.
     pub(crate) fn table(
-        mut self,
+        self,
         file: &str,
         time: &Stated,
         channels: &[Channel],
@@ -98,19 +97,7 @@ impl Columns {
         };
         let places: Result<Vec<usize>, _> = channels.iter().map(|c| place(&c.column)).collect();
         let places = places?;
-        let is_known = |i: &usize| {
-            time.is_in(*i) || places.contains(i) || episode::is_episode(&self.names[*i])
-        };
-        let unknown = (0..self.names.len()).filter(|i| !is_known(i));
-        let unknown: Vec<String> = unknown.map(|i| shown(&self.names[i])).collect();
-        if !unknown.is_empty() {
-            let message = format!(
-                "columns without a description are ignored: {}",
-                listed(&unknown)
-            );
-            let finding = Finding::new(FindingKind::UnknownColumn, message);
-            self.findings.push(finding);
-        }
+        let mut findings = Vec::from_iter(ignored(&self.names, &time, &places));
         let mut clock = Clock::default();
         // Formats in columns may be damaged so that these differ.
         if let Some(place) = places
@@ -132,7 +119,7 @@ impl Columns {
             .filter(|&row| episode.as_ref().is_none_or(|rows| rows[row]))
             .filter(|&row| clock.accept(times[row], row + 1, &format!("row {}", row + 1)))
             .collect();
-        self.findings.extend(clock.findings(file)?);
+        findings.extend(clock.findings(file)?);
         let numbers = rows.len().saturating_mul(1 + channels.len());
         *budget = budget
             .checked_sub(numbers)
@@ -150,10 +137,9 @@ impl Columns {
         let mut columns: Vec<Vec<f64>> = places.iter().zip(channels).map(column).collect();
         let mut times: Vec<f64> = rows.iter().map(|&row| times[row]).collect();
         if matches!(self.clock, OwnClock::Column) {
-            let joined = topics::joined(&mut times, &mut columns, channels);
-            self.findings.extend(joined);
+            findings.extend(topics::joined(&mut times, &mut columns, channels));
         }
-        checked(file, &time, times, channels, columns, self.findings)
+        checked(file, &time, times, channels, columns, findings)
     }
 
     /// The times in s. The unit that the format states is not stated otherwise; time stamps count from the first row
@@ -203,15 +189,22 @@ impl Columns {
         let Some(chosen) = chosen else {
             return Ok(None);
         };
-        let mut names = self.names.iter();
-        let column = names.position(|name| episode::is_episode(name));
-        let column = column.ok_or_else(|| DataError::whole(file, episode::NONE))?;
-        let rows = self.values[column].iter();
-        Ok(Some(
-            rows.map(|own| episode::number(*own) == Some(chosen))
-                .collect(),
-        ))
+        let rows = self.values[episode::column(&self.names, file)?].iter();
+        let is_chosen = |own: &f64| episode::number(*own) == Some(chosen);
+        Ok(Some(rows.map(is_chosen).collect()))
     }
+}
+
+/// The columns that are neither the times nor a channel.
+pub(crate) fn ignored(names: &[String], time: &TimeColumn, channels: &[usize]) -> Option<Finding> {
+    let is_known = |i: usize| time.is_in(i) || channels.contains(&i) || is_episode(&names[i]);
+    let unknown = (0..names.len()).filter(|&i| !is_known(i));
+    let unknown: Vec<String> = unknown.map(|i| shown(&names[i])).collect();
+    (!unknown.is_empty()).then(|| {
+        let list = listed(&unknown);
+        let message = format!("columns without a description are ignored: {list}");
+        Finding::new(FindingKind::UnknownColumn, message)
+    })
 }
 
 /// Non-finite values count as missing.

@@ -15,25 +15,9 @@ use crate::channel::Channel;
 pub(crate) const TIME: &str = "t";
 
 /// Names of clocks, in small letters with `_` between words.
-const NAMES: [&str; 7] = [
-    TIME,
-    "time",
-    "times",
-    "timestamp",
-    "timestamps",
-    "time_stamp",
-    "elapsed_time",
-];
+const NAMES: &str = "t time times timestamp timestamps time_stamp elapsed_time";
 /// Names of stamps, which are the clock where no column has one of the names above.
-const STAMPS: [&str; 7] = [
-    "stamp",
-    "header_stamp",
-    "field_header_stamp",
-    "%time",
-    "sim_time",
-    "log_time",
-    "elapsed",
-];
+const STAMPS: &str = "stamp header_stamp field_header_stamp %time sim_time log_time elapsed";
 /// Ends of the names of two columns that are one time: in s and in ns.
 const PARTS: [[&str; 2]; 4] = [
     [".sec", ".nanosec"],
@@ -41,28 +25,18 @@ const PARTS: [[&str; 2]; 4] = [
     ["_sec", "_nanosec"],
     ["_secs", "_nsecs"],
 ];
-/// Words for units of time, each with the symbol of the unit.
-const WORDS: [(&str, &str); 17] = [
-    ("sec", "s"),
-    ("secs", "s"),
-    ("second", "s"),
-    ("seconds", "s"),
-    ("msec", "ms"),
-    ("millis", "ms"),
-    ("millisecond", "ms"),
-    ("milliseconds", "ms"),
-    ("µs", "us"),
-    ("μs", "us"),
-    ("usec", "us"),
-    ("micros", "us"),
-    ("microsecond", "us"),
-    ("microseconds", "us"),
-    ("nsec", "ns"),
-    ("nanosecond", "ns"),
-    ("nanoseconds", "ns"),
+/// Symbols of units that may follow a name without brackets, each with words for the unit.
+const UNITS: [(&str, &str); 4] = [
+    ("s", "sec secs second seconds"),
+    ("ms", "msec millis millisecond milliseconds"),
+    ("us", "µs μs usec micros microsecond microseconds"),
+    ("ns", "nsec nanosecond nanoseconds"),
 ];
-/// Symbols that may follow a name without brackets.
-const SYMBOLS: [&str; 4] = ["s", "ms", "us", "ns"];
+
+/// Whether a list of words, with blanks between them, has a word.
+pub(crate) fn has(list: &str, word: &str) -> bool {
+    list.split(' ').any(|own| own == word)
+}
 
 /// Times in s from which on they are those of a calendar.
 const CALENDAR: f64 = 1e8;
@@ -203,7 +177,7 @@ impl Stated {
         };
         let clocks = known(&may_be_time);
         if clocks.is_empty() {
-            return known(&|name| split(name, &STAMPS).is_some());
+            return known(&|name| split(name, STAMPS).is_some());
         }
         clocks
     }
@@ -226,7 +200,7 @@ impl Stated {
             let (base, ends) = PARTS
                 .iter()
                 .find_map(|ends| Some((name.strip_suffix(ends[0])?, ends)))?;
-            let is_stamp = is_clock(&plain(base)) || plain(base).ends_with("stamp");
+            let is_stamp = has(NAMES, &plain(base)) || plain(base).ends_with("stamp");
             let nanoseconds = place(&format!("{base}{}", ends[1])).filter(|_| is_stamp)?;
             (!is_channel(name)).then(|| TimeColumn::of_parts(base, [index, nanoseconds]))
         });
@@ -257,10 +231,15 @@ impl TimeColumn {
     }
 }
 
+/// Whether a key of TOML needs no quotes.
+pub(crate) fn is_bare(key: &str) -> bool {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    !key.is_empty() && key.chars().all(is_bare)
+}
+
 /// The line of `[channels]` that names the column of the times.
 pub(crate) fn line(name: &str, unit: &str) -> String {
-    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    let name = if !name.is_empty() && name.chars().all(is_bare) {
+    let name = if is_bare(name) {
         name.to_owned()
     } else {
         format!("\"{name}\"")
@@ -270,15 +249,15 @@ pub(crate) fn line(name: &str, unit: &str) -> String {
 
 /// Whether a column has the name of a clock.
 pub(crate) fn may_be_time(name: &str) -> bool {
-    split(name, &NAMES).is_some()
+    split(name, NAMES).is_some()
 }
 
 /// Whether a column may be the times, or a part of them.
 pub(crate) fn may_be_needed(name: &str) -> bool {
     let ends = PARTS.as_flattened().iter();
     let mut bases = ends.filter_map(|end| name.strip_suffix(end));
-    let is_part = bases.any(|base| is_clock(&plain(base)) || plain(base).ends_with("stamp"));
-    is_part || may_be_time(name) || split(name, &STAMPS).is_some()
+    let is_part = bases.any(|base| has(NAMES, &plain(base)) || plain(base).ends_with("stamp"));
+    is_part || may_be_time(name) || split(name, STAMPS).is_some()
 }
 
 /// Whether a column is a part of the times of this name.
@@ -289,30 +268,33 @@ pub(crate) fn is_part(name: &str, of: &str) -> bool {
 
 /// The unit of the times that the name of a column states.
 pub(crate) fn unit_of(name: &str) -> Option<Unit> {
-    let named = split(name, &NAMES).or_else(|| split(name, &STAMPS));
-    named?.1
+    let named = split(name, NAMES).or_else(|| split(name, STAMPS));
+    named?.unit
 }
 
-/// The name of a clock and the unit behind it.
-fn split(name: &str, known: &[&str]) -> Option<(String, Option<Unit>)> {
-    let is_clock = |name: &str| known.contains(&name);
+/// What stands behind the name of a clock.
+struct Behind {
+    unit: Option<Unit>,
+}
+
+/// What stands behind the name of a clock; nothing for other names.
+fn split(name: &str, known: &str) -> Option<Behind> {
     let name = name.trim();
     if let Some((clock, unit)) = bracketed(name) {
-        let clock = plain(clock);
         let unit = unit_by(unit)?;
-        return is_clock(&clock).then_some((clock, Some(unit)));
+        let unit = Some(unit);
+        return has(known, &plain(clock)).then_some(Behind { unit });
     }
     let whole = plain(name);
-    if is_clock(&whole) {
-        return Some((whole, None));
+    if has(known, &whole) {
+        return Some(Behind { unit: None });
     }
     let (clock, last) = whole.rsplit_once('_')?;
-    let is_symbol = SYMBOLS.contains(&last) || WORDS.iter().any(|(word, _)| *word == last);
-    (is_symbol && is_clock(clock)).then(|| (clock.to_owned(), unit_by(last)))
-}
-
-fn is_clock(name: &str) -> bool {
-    NAMES.contains(&name)
+    let mut units = UNITS.iter();
+    let is_unit = units.any(|(symbol, words)| *symbol == last || has(words, last));
+    (is_unit && has(known, clock)).then(|| Behind {
+        unit: unit_by(last),
+    })
 }
 
 /// Splits a name into the part before and the part within trailing brackets.
@@ -334,8 +316,8 @@ fn plain(name: &str) -> String {
 fn unit_by(text: &str) -> Option<Unit> {
     let text = text.trim();
     let lower = text.to_lowercase();
-    let word = WORDS.iter().find(|(word, _)| *word == lower);
-    let unit = units::parse(word.map_or(text, |(_, symbol)| symbol)).ok()?;
+    let word = UNITS.iter().find(|(_, words)| has(words, &lower));
+    let unit = units::parse(word.map_or(text, |(symbol, _)| symbol)).ok()?;
     (unit.dimension == Dimension::TIME).then_some(unit)
 }
 

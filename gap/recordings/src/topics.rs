@@ -2,6 +2,7 @@
 //! measurements.
 
 use crate::channel::{Channel, Role};
+use crate::run::hold;
 use crate::{Finding, FindingKind};
 
 /// Part of the rows that may lack a value by a fault; with more, the messages come at other times.
@@ -22,13 +23,9 @@ pub(crate) fn joined(
             continue;
         }
         is_held = true;
-        let mut last = f64::NAN;
-        for (value, is_kept) in values.iter_mut().zip(&mut is_kept) {
-            if value.is_nan() {
-                *value = last;
-            }
-            last = *value;
-            *is_kept &= !last.is_nan();
+        hold(values, f64::NAN);
+        for (value, is_kept) in values.iter().zip(&mut is_kept) {
+            *is_kept &= !value.is_nan();
         }
     }
     let measured = || {
@@ -37,14 +34,11 @@ pub(crate) fn joined(
     };
     let lacks = |row: usize| measured().all(|(_, values)| values[row].is_nan());
     let without: Vec<usize> = (0..times.len()).filter(|&row| lacks(row)).collect();
-    let is_apart = is_held || without.len() as f64 > most;
-    if is_apart {
-        for row in without {
-            is_kept[row] = false;
-        }
-    }
-    if !is_apart {
+    if !is_held && without.len() as f64 <= most {
         return None;
+    }
+    for row in without {
+        is_kept[row] = false;
     }
     // A log without any row that has all is refused for what its columns lack.
     if is_kept.contains(&true) {

@@ -140,7 +140,7 @@ fn points_centre_and_angles_of_a_ride_on_a_circle_are_found() {
 #[test]
 fn velocity_and_acceleration_stand_in_the_moving_frame() {
     let (_, ride) = ride();
-    let filter = SavitzkyGolay::new(4, 9).unwrap();
+    let filter = SavitzkyGolay::new(4, 9);
     let smoothed = Smoothed::of(&ride, filter).unwrap();
     let speed = RADIUS * RATE;
     for row in 0..ROWS {

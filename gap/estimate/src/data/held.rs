@@ -23,6 +23,16 @@ impl Held {
         }
     }
 
+    /// Rows of inputs; `None` unless there is a finite value of each input for each time.
+    pub(super) fn of(times: Vec<f64>, inputs: Vec<f64>, count: usize) -> Option<Self> {
+        let is_whole = inputs.len() == times.len() * count && inputs.iter().all(|u| u.is_finite());
+        is_whole.then_some(Self {
+            times,
+            inputs,
+            count,
+        })
+    }
+
     /// An input at a row.
     pub(super) fn at(&self, row: usize, input: usize) -> f64 {
         self.inputs[row * self.count + input]

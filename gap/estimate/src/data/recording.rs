@@ -143,14 +143,9 @@ impl Recording {
     #[must_use]
     pub fn subsampled(mut self, times: Vec<f64>, inputs: Vec<f64>) -> Self {
         let count = self.columns[0];
-        let is_whole = inputs.len() == times.len() * count && inputs.iter().all(|u| u.is_finite());
-        if times.is_empty() || !is_whole {
-            return self;
-        }
-        let all = Held {
-            times,
-            inputs,
-            count,
+        let all = match Held::of(times, inputs, count) {
+            Some(all) if !all.times.is_empty() => all,
+            _ => return self,
         };
         let ends = self.times.iter().skip(1).copied().map(Some).chain([None]);
         let rows = self.times.iter().copied().zip(ends);
@@ -170,14 +165,8 @@ impl Recording {
     /// react at once: outputs are means from half a row before their time to half a row after it, or are read at it.
     #[must_use]
     pub fn with_outputs(mut self, are_means: bool, times: Vec<f64>, inputs: Vec<f64>) -> Self {
-        let count = self.columns[0];
-        let is_whole = inputs.len() == times.len() * count && inputs.iter().all(|u| u.is_finite());
-        let held = Held {
-            times,
-            inputs,
-            count,
-        };
-        self.of_outputs = (held.times.len() > 1 && is_whole).then_some((held, are_means));
+        let held = Held::of(times, inputs, self.columns[0]).filter(|held| held.times.len() > 1);
+        self.of_outputs = held.map(|held| (held, are_means));
         self
     }
 
@@ -366,34 +355,28 @@ impl Recording {
     #[must_use]
     pub fn part(&self, rows: Range<usize>) -> Self {
         let [inputs, channels] = self.columns;
+        let own = rows.start * inputs..rows.end * inputs;
+        let curvatures = self.curvatures.iter();
+        let curvatures = curvatures.map(|all| all.get(rows.clone()).unwrap_or_default().to_vec());
         Self {
             times: self.times[rows.clone()].to_vec(),
-            inputs: self.inputs[rows.start * inputs..rows.end * inputs].to_vec(),
+            inputs: self.inputs[own.clone()].to_vec(),
             measurements: self.measurements[rows.start * channels..rows.end * channels].to_vec(),
-            columns: self.columns,
-            interpolation: self.interpolation.clone(),
-            curvatures: (self.curvatures.iter())
-                .map(|own| own.get(rows.clone()).unwrap_or_default().to_vec())
-                .collect(),
+            curvatures: curvatures.collect(),
             earlier: Held::none(inputs),
-            lines: (self.lines.get(rows.start * inputs..rows.end * inputs))
-                .unwrap_or_default()
-                .to_vec(),
-            of_outputs: self.of_outputs.clone(),
-            differences: self.differences.clone(),
+            lines: self.lines.get(own).unwrap_or_default().to_vec(),
+            ..self.clone()
         }
     }
 
     /// The same recording with other measurements.
     pub fn with_measurements(&self, measurements: Vec<f64>) -> Result<Self, EstimateError> {
-        let same = Self::new(self.times.clone(), self.inputs.clone(), measurements)?;
+        let checked = Self::new(self.times.clone(), self.inputs.clone(), measurements)?;
         Ok(Self {
-            interpolation: self.interpolation.clone(),
-            curvatures: self.curvatures.clone(),
-            earlier: self.earlier.clone(),
-            lines: self.lines.clone(),
-            of_outputs: self.of_outputs.clone(),
-            ..same
+            measurements: checked.measurements,
+            columns: checked.columns,
+            differences: Vec::new(),
+            ..self.clone()
         })
     }
 }

@@ -127,10 +127,20 @@ impl<'a> Setup<'a> {
         })
     }
 
-    /// Whether any channel reads an output.
-    pub(crate) fn reads_outputs(&self) -> bool {
+    /// Number of outputs to evaluate for the channels: all, or none if no channel reads any.
+    pub(crate) fn output_len(&self) -> usize {
         let mut channels = 0..self.channels.len();
-        channels.any(|channel| matches!(self.reads(channel), Measured::Output(_)))
+        let reads_any = channels.any(|channel| matches!(self.reads(channel), Measured::Output(_)));
+        usize::from(reads_any) * self.model.info().output_len()
+    }
+
+    /// The channels with a value among those of a row: one delayed channel, or all others.
+    pub(crate) fn sampled(&self, measured: &[f64], only: Option<usize>) -> Vec<usize> {
+        let is_sampled = |channel: &usize| {
+            let late = self.channels[*channel].longest_delay.is_some();
+            only.map_or(!late, |only| only == *channel) && !measured[*channel].is_nan()
+        };
+        (0..self.channels.len()).filter(is_sampled).collect()
     }
 
     pub(crate) fn check(&self, recordings: &[Recording]) -> Result<(), EstimateError> {

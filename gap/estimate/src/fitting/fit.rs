@@ -113,17 +113,9 @@ impl Fit {
             }
             if is_over {
                 return Ok(Self {
-                    free: free.to_vec(),
-                    at_limit: point.is_held,
-                    values: point.values,
-                    coordinates: point.coordinates,
-                    log_likelihood: point.log_likelihood,
-                    log_posterior: point.objective,
-                    information,
-                    curvature,
-                    promised: DVector::zeros(free.len()),
                     gain: left,
                     steps,
+                    ..Self::at(point, free, [information, curvature])
                 });
             }
             steps += 1;
@@ -146,6 +138,24 @@ impl Fit {
                 }
                 _ => damping = (6.0 * damping).max(DAMPING),
             }
+        }
+    }
+
+    /// An optimum at a point, with its expected and its observed curvature.
+    pub(super) fn at(point: Point, free: &[Free], curvatures: [DMatrix<f64>; 2]) -> Self {
+        let [information, curvature] = curvatures;
+        Self {
+            values: point.values,
+            free: free.to_vec(),
+            coordinates: point.coordinates,
+            at_limit: point.is_held,
+            log_likelihood: point.log_likelihood,
+            log_posterior: point.objective,
+            information,
+            curvature,
+            promised: DVector::zeros(free.len()),
+            gain: 0.0,
+            steps: 0,
         }
     }
 

@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use super::free::{Coordinate, Free, Selection};
 use crate::EstimateError;
 use crate::estimation::Estimation;
-use crate::gradient::kept::Kept;
+use crate::gradient::direction::Direction;
+use crate::gradient::kept::{Kept, Slopes};
 
 /// Largest change of a logarithm in one step, for levels whose optimum is zero.
 const REACH: f64 = 3.0;
@@ -41,32 +42,34 @@ pub(crate) struct Point {
     pub(crate) is_held: Vec<bool>,
     /// Fisher information of the coordinates that affect means, if it was computed with the gradient.
     pub(crate) means: Option<DMatrix<f64>>,
-    /// Number of steps of each run, if it was computed with it.
+    /// Number of steps of each run.
     pub(crate) steps: Vec<usize>,
 }
 
 impl Posterior<'_, '_> {
     /// At some values, clamped to their limits.
     pub(crate) fn at(&self, values: &[f64]) -> Result<Point, EstimateError> {
-        let (values, coordinates) = self.clamped(values)?;
-        let (log_likelihood, slopes) = self.estimation.gradient(&values)?;
-        Ok(self.point(values, coordinates, log_likelihood, &slopes))
+        self.kept(self.clamped(values)?, &[])
     }
 
     /// The same with the information of the means.
     pub(crate) fn with_means(&self, values: &[f64]) -> Result<Point, EstimateError> {
-        let (values, coordinates) = self.clamped(values)?;
-        let kept = self
-            .estimation
-            .kept(&values, &self.selection.directions(), &[])?;
-        Ok(self.kept_point(&values, coordinates, kept))
+        self.kept(self.clamped(values)?, &self.selection.directions())
     }
 
     /// After a step from a point.
     pub(crate) fn moved(&self, point: &Point, step: &DVector<f64>) -> Result<Point, EstimateError> {
-        let (values, coordinates) = self.stepped(point, step);
-        let (log_likelihood, slopes) = self.estimation.gradient(&values)?;
-        Ok(self.point(values, coordinates, log_likelihood, &slopes))
+        self.kept(self.stepped(point, step), &[])
+    }
+
+    /// At values with their coordinates, with the information of the means along some directions.
+    fn kept(
+        &self,
+        (values, coordinates): (Vec<f64>, DVector<f64>),
+        directions: &[Direction],
+    ) -> Result<Point, EstimateError> {
+        let kept = self.estimation.kept(&values, directions, &[])?;
+        Ok(self.point(&values, coordinates, kept))
     }
 
     /// The same with the information of the means, if the objective rises by more than `gain`, without many more steps of
@@ -96,20 +99,8 @@ impl Posterior<'_, '_> {
             .estimation
             .kept(&values, &directions, &most_steps)
             .ok()?;
-        let next =
-            may_be(kept.log_likelihood()).then(|| self.kept_point(&values, coordinates, kept))?;
+        let next = may_be(kept.log_likelihood()).then(|| self.point(&values, coordinates, kept))?;
         (next.objective.is_finite() && point.is_worse_than(&next, gain)).then_some(next)
-    }
-
-    /// The point of a pass that is kept.
-    fn kept_point(&self, values: &[f64], coordinates: DVector<f64>, kept: Kept<'_, '_>) -> Point {
-        let (likelihood, steps) = (kept.log_likelihood(), kept.steps());
-        let slopes = kept.slopes();
-        Point {
-            means: Some(self.selection.stretched(slopes.means, values)),
-            steps,
-            ..self.point(values.to_vec(), coordinates, likelihood, &slopes.gradient)
-        }
     }
 
     /// Values within their limits, and their coordinates.
@@ -131,16 +122,13 @@ impl Posterior<'_, '_> {
         (values, coordinates)
     }
 
-    /// The log-posterior from the log-likelihood and its slopes.
-    fn point(
-        &self,
-        values: Vec<f64>,
-        coordinates: DVector<f64>,
-        log_likelihood: f64,
-        slopes: &[f64],
-    ) -> Point {
+    /// The point of a pass that is kept.
+    fn point(&self, values: &[f64], coordinates: DVector<f64>, kept: Kept<'_, '_>) -> Point {
+        let (log_likelihood, steps) = (kept.log_likelihood(), kept.steps());
+        let Slopes { gradient, means } = kept.slopes();
         let (prior, by_prior) = self.selection.prior(&coordinates);
-        let gradient = self.selection.gradient(&values, slopes) + by_prior;
+        let gradient = self.selection.gradient(values, &gradient) + by_prior;
+        let has_means = means.nrows() == self.selection.len();
         let limits = self.selection.limits();
         let all = coordinates.iter().zip(&gradient).zip(limits);
         let is_held = all.map(|((&x, &slope), [low, high])| {
@@ -148,13 +136,13 @@ impl Posterior<'_, '_> {
         });
         Point {
             is_held: is_held.collect(),
-            means: None,
-            steps: Vec::new(),
+            means: has_means.then(|| self.selection.stretched(means, values)),
+            steps,
             objective: log_likelihood + prior,
             log_likelihood,
             gradient,
             coordinates,
-            values,
+            values: values.to_vec(),
         }
     }
 

@@ -66,17 +66,10 @@ impl Fit {
                     }
                 }
                 return Ok(Self {
-                    free: free.to_vec(),
-                    at_limit: point.is_held,
-                    values: point.values,
-                    coordinates: point.coordinates,
-                    log_likelihood: point.log_likelihood,
-                    log_posterior: point.objective,
-                    curvature: information.clone(),
-                    information,
                     promised,
                     gain,
                     steps,
+                    ..Self::at(point, free, [information.clone(), information])
                 });
             }
             steps += 1;

@@ -13,20 +13,18 @@ use crate::matrix::{
 };
 use crate::motion::closure::Closure;
 use crate::motion::command;
-use crate::motion::plant::{Place, Scratch, StateSpace, Sums};
+use crate::motion::plant::{Scratch, StateSpace, Sums};
 use crate::motion::timeline::Advance;
 use crate::motion::transition::{self, ByEnds, Effects, Reverse, Span};
 
 /// Gradients during the reverse sweep.
 struct Backward<'p, 'a> {
     pass: &'p Pass<'a>,
-    /// With respect to the state and the covariance after the next record.
-    z: Vec<f64>,
+    /// With respect to the state after the next record, the parameters, the time constants, and the declared inputs of a
+    /// step or moment.
+    sums: Sums,
+    /// With respect to the covariance after the next record.
     p: Vec<f64>,
-    parameters: Vec<f64>,
-    lags: Vec<f64>,
-    /// With respect to the declared inputs of a step or moment.
-    inputs: Vec<f64>,
     scratch: Scratch,
     closure: Option<Closure>,
     reverse: Reverse,
@@ -43,19 +41,12 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, gradient: &mut [f64]) {
     let mut tape = std::mem::take(&mut pass.tape);
     let (n, s) = (pass.sizes.n, pass.system.plant.speeds);
     let zeros = |len| vec![0.0; len];
-    let outputs = if pass.system.setup.reads_outputs() {
-        pass.system.plant.info().output_len()
-    } else {
-        0
-    };
+    let outputs = pass.system.setup.output_len();
     let shared = &*pass;
     let mut back = Backward {
         pass: shared,
-        z: zeros(n),
+        sums: Sums::zeros(pass.system.plant),
         p: zeros(n * n),
-        parameters: zeros(pass.system.layout.parameters),
-        lags: zeros(pass.system.layout.lags),
-        inputs: zeros(pass.system.plant.info().declared_inputs),
         scratch: pass.system.plant.scratch(),
         closure: pass.closure.clone(),
         reverse: Reverse::new(pass.system.plant),
@@ -95,16 +86,16 @@ impl Backward<'_, '_> {
     fn start(&self, gradient: &mut [f64]) {
         let layout = &self.pass.system.layout;
         let (n, run) = (self.pass.sizes.n, self.pass.run);
-        add(&self.z, &mut gradient[layout.initial(run)..][..n]);
+        add(&self.sums.z, &mut gradient[layout.initial(run)..][..n]);
         let spread = layout.spread(run);
         for i in 0..n {
             gradient[spread + i] += 2.0 * self.pass.values[spread + i] * self.p[i * (n + 1)];
         }
-        add(&self.parameters, gradient);
-        add(&self.lags, &mut gradient[layout.lag(0)..]);
+        add(&self.sums.p, gradient);
+        add(&self.sums.lags, &mut gradient[layout.lag(0)..]);
         let first = self.pass.system.setup.model.info().state_len();
         for (lag, [_, slope]) in self.pass.before.iter().enumerate() {
-            gradient[layout.lag(lag)] += slope * self.z[first + lag];
+            gradient[layout.lag(lag)] += slope * self.sums.z[first + lag];
         }
     }
 
@@ -114,36 +105,18 @@ impl Backward<'_, '_> {
             return;
         };
         let closed = z.to_vec();
-        let StateSpace { plant, layout, .. } = self.pass.system;
-        let place = Place::new(layout, self.pass.values, t, &closed, held);
+        let plant = self.pass.system.plant;
+        let place = self.pass.place(t, &closed, held);
         // The forward pass succeeded here.
         let _ = closure.close(plant, place, &mut self.scratch, z);
-        let mut sums = Sums {
-            z: &mut self.z,
-            p: &mut self.parameters,
-            lags: &mut self.lags,
-            u: &mut self.inputs,
-        };
-        closure.adjoint(
-            plant,
-            place,
-            &mut self.scratch,
-            root,
-            &mut self.p,
-            &mut sums,
-        );
+        let (scratch, sums) = (&mut self.scratch, &mut self.sums);
+        closure.adjoint(plant, place, scratch, root, &mut self.p, sums);
     }
 
     /// A step.
     fn advance(&mut self, advance: Advance, on: &StepTape<'_>, gradient: &mut [f64]) {
         let pass = self.pass;
-        let span = Span {
-            t: advance.t,
-            h: advance.h,
-            held: on.held,
-            p: pass.p(),
-            lags: pass.lags(),
-        };
+        let span = Span::new(pass.system.layout, pass.values, advance, on.held);
         self.covariance(on);
         let (mut by_h, is_pushed) = self.levels(advance.h, on, gradient);
         let [product, by_f, covariance] = &mut self.square;
@@ -154,7 +127,7 @@ impl Backward<'_, '_> {
             self.inertia(span, on);
         }
         let has_moving_ends = advance.moved_by.iter().any(Option::is_some);
-        self.inputs.fill(0.0);
+        self.sums.u.fill(0.0);
         let by = self.motion(span, on, has_moving_ends);
         by_h += by.length;
         for moved in advance.moved_by.into_iter().flatten() {
@@ -167,7 +140,7 @@ impl Backward<'_, '_> {
     fn late_inputs(&self, gradient: &mut [f64]) {
         let StateSpace { setup, layout, .. } = self.pass.system;
         for (index, &input) in setup.delayed.iter().enumerate() {
-            gradient[layout.input_delay(index)] += self.inputs[input];
+            gradient[layout.input_delay(index)] += self.sums.u[input];
         }
     }
 
@@ -242,19 +215,13 @@ impl Backward<'_, '_> {
 
     /// From the state after a step, F and the mass matrix to the state before it.
     fn motion(&mut self, span: Span<'_>, on: &StepTape<'_>, by_ends: bool) -> ByEnds {
-        self.vector[0].copy_from_slice(&self.z);
-        self.z.fill(0.0);
+        self.vector[0].copy_from_slice(&self.sums.z);
+        self.sums.z.fill(0.0);
         let effects = Effects {
             after: &self.vector[0],
             f: &self.square[1],
             mass: &self.mass,
             by_ends,
-        };
-        let mut sums = Sums {
-            z: &mut self.z,
-            p: &mut self.parameters,
-            lags: &mut self.lags,
-            u: &mut self.inputs,
         };
         transition::adjoint(
             self.pass.system.plant,
@@ -263,7 +230,7 @@ impl Backward<'_, '_> {
             &on.stages,
             effects,
             &mut self.reverse,
-            &mut sums,
+            &mut self.sums,
         )
     }
 
@@ -309,33 +276,27 @@ impl Backward<'_, '_> {
                 }
             }
         }
-        add(&by_prior, &mut self.z);
+        add(&by_prior, &mut self.sums.z);
         if outputs {
-            self.inputs.fill(0.0);
+            self.sums.u.fill(0.0);
             let states = pass.system.setup.model.info().state_len();
             let lagged = states..states + lags.len();
             for slopes in self.slopes.chunks_exact_mut(n) {
                 slopes[lagged.clone()].fill(0.0);
             }
-            let motion = self.z[lagged.clone()].to_vec();
+            let motion = self.sums.z[lagged.clone()].to_vec();
             let mut read = prior;
             for (own, [value, _]) in read[states..].iter_mut().zip(lags) {
                 *own = *value;
             }
             let t = pass.time_of(&first.innovation);
-            let place = Place::new(pass.system.layout, pass.values, t, &read, held);
-            let mut sums = Sums {
-                z: &mut self.z,
-                p: &mut self.parameters,
-                lags: &mut self.lags,
-                u: &mut self.inputs,
-            };
+            let place = pass.place(t, &read, held);
             let weights = [self.mu.as_slice(), &self.slopes];
             let plant = pass.system.plant;
-            plant.output_adjoint(place, &mut self.scratch, weights, &mut sums);
+            plant.output_adjoint(place, &mut self.scratch, weights, &mut self.sums);
             // Inputs that lag are not those of the motion.
             for ((sum, own), (lag, [_, slope])) in
-                (self.z[lagged].iter_mut().zip(motion)).zip(lags.iter().enumerate())
+                (self.sums.z[lagged].iter_mut().zip(motion)).zip(lags.iter().enumerate())
             {
                 gradient[pass.system.layout.lag(lag)] += (*sum - own) * slope;
                 *sum = own;
@@ -343,9 +304,9 @@ impl Backward<'_, '_> {
             let channel = first.innovation.channel;
             if pass.system.setup.channels[channel].longest_delay.is_some() {
                 let delay = pass.system.layout.sensor_delay(channel);
-                gradient[delay] -= command::by_time(held, &self.inputs, t);
+                gradient[delay] -= command::by_time(held, &self.sums.u, t);
             }
-            for (input, by) in self.inputs.iter_mut().enumerate() {
+            for (input, by) in self.sums.u.iter_mut().enumerate() {
                 *by *= -command::slope(held, input, t);
             }
             self.late_inputs(gradient);
@@ -372,13 +333,13 @@ impl Backward<'_, '_> {
         );
         let [by_c, by_a] = &mut self.vector;
         // Contribution to the log-likelihood: −(ln 2πs + e²/s)/2.
-        let along = dot(&self.z, a);
+        let along = dot(&self.sums.z, a);
         let by_e = (along - e) / s;
         multiply(&self.p, a, n, by_a);
         let shrunk = dot(a, by_a);
         let by_s = -0.5 * (1.0 - e * e / s) / s + (shrunk - along * e) / (s * s);
         scale(-2.0 / s, by_a);
-        add_scaled(e / s, &self.z, by_a);
+        add_scaled(e / s, &self.sums.z, by_a);
         add_scaled(by_s, c, by_a);
         // s = cᵀ a + r.
         by_c.copy_from_slice(a);
@@ -407,7 +368,7 @@ impl Backward<'_, '_> {
         for i in 0..n {
             by_c[i] -= by_e * (z[i] - prior[i]);
         }
-        add_scaled(-by_e, c, &mut self.z);
+        add_scaled(-by_e, c, &mut self.sums.z);
         add_scaled(by_e, c, by_prior);
         -by_e
     }

@@ -20,7 +20,7 @@ use crate::kalman::filter::{Innovation, Pass};
 use crate::kalman::tape::{Record, SampleTape};
 use crate::matrix::{add_scaled, dot, multiply, multiply_add};
 use crate::motion::command;
-use crate::motion::plant::{Place, Plant, Scratch, Sums};
+use crate::motion::plant::{Place, Plant, Scratch};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{Span, added_by_rate, by_constant_rates};
 
@@ -224,12 +224,8 @@ impl<'p, 'a> Forward<'p, 'a> {
             return;
         };
         closure.follow(&mut self.z);
-        let t = match action {
-            Action::Advance(advance) => advance.t + advance.h,
-            _ => recording_time(recording, action),
-        };
-        let (z, held) = (&self.pass.z, &self.pass.held);
-        let place = Place::new(self.pass.system.layout, self.pass.values, t, z, held);
+        let t = action.end(recording);
+        let place = self.pass.place(t, &self.pass.z, &self.pass.held);
         for (column, direction) in self.directions.iter().enumerate() {
             if let Direction::Value(Unknown::Parameter(index)) = *direction {
                 let plant = self.pass.system.plant;
@@ -251,8 +247,8 @@ impl<'p, 'a> Forward<'p, 'a> {
         let plant = self.pass.system.plant;
         let on = self.pass.sizes.step(tape);
         let middle = &on.stages.z[n..2 * n];
-        let (values, t) = (self.pass.values, advance.t + 0.5 * advance.h);
-        let place = Place::new(self.pass.system.layout, values, t, middle, on.held);
+        let t = advance.t + 0.5 * advance.h;
+        let place = self.pass.place(t, middle, on.held);
         self.added.fill(0.0);
         if self.directions.iter().any(is_parameter) {
             plant.parameter_jacobian(place, &mut self.scratch, &mut self.by_parameters);
@@ -328,15 +324,10 @@ impl<'p, 'a> Forward<'p, 'a> {
             self.pass.sizes.n,
             self.estimation.setup().model.info().state_len(),
         );
-        let (p, lags, plant) = (self.pass.p(), self.pass.lags(), self.pass.system.plant);
+        let (lags, plant) = (self.pass.lags(), self.pass.system.plant);
         let on = self.pass.sizes.step(tape);
-        let span = Span {
-            t: advance.t,
-            h: advance.h,
-            held: on.held,
-            p,
-            lags,
-        };
+        let (layout, values) = (self.pass.system.layout, self.pass.values);
+        let span = Span::new(layout, values, advance, on.held);
         let stage = |i: usize| span.place(i, &on.stages.z[i * n..(i + 1) * n]);
         let added = |state, rates| added_by_rate(&on.stages, n, advance.h, state, rates);
         let mut filters = [const { Vec::new() }; 4];
@@ -378,8 +369,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             if old.to_bits() == new.to_bits() {
                 continue;
             }
-            let (z, held) = (&self.pass.z, &self.pass.held);
-            let place = Place::new(self.pass.system.layout, self.pass.values, t, z, held);
+            let place = self.pass.place(t, &self.pass.z, &self.pass.held);
             let (by_states, by_inputs) = (&mut self.by_states, &mut self.by_inputs);
             let by = by_input(plant, place, &mut self.scratch, by_states, by_inputs, input);
             for (state, by) in by.into_iter().enumerate() {
@@ -474,35 +464,16 @@ impl<'p, 'a> Forward<'p, 'a> {
         let Measured::Output(output) = setup.reads(channel) else {
             return (Vec::new(), Vec::new(), Vec::new());
         };
-        let info = setup.model.info();
-        let n = self.pass.sizes.n;
-        let mut weights = vec![0.0; info.output_len()];
-        weights[output] = self.pass.values[self.pass.system.layout.scale(channel)];
-        let slopes = vec![0.0; info.output_len() * n];
-        let mut by = (
-            vec![0.0; n],
-            vec![0.0; info.parameter_len()],
-            vec![0.0; setup.lag_len()],
-        );
-        let mut by_inputs = vec![0.0; info.declared_inputs];
+        let scale = self.pass.values[self.pass.system.layout.scale(channel)];
         let t = self.pass.time_of(&sample.innovation);
         let mut z = self.pass.z.clone();
-        for (own, [value, _]) in z[info.state_len()..].iter_mut().zip(lags) {
+        for (own, [value, _]) in z[setup.model.info().state_len()..].iter_mut().zip(lags) {
             *own = *value;
         }
-        let place = Place::new(self.pass.system.layout, self.pass.values, t, &z, held);
-        let mut sums = Sums {
-            z: &mut by.0,
-            p: &mut by.1,
-            lags: &mut by.2,
-            u: &mut by_inputs,
-        };
-        let weights = [weights.as_slice(), &slopes];
-        self.pass
-            .system
-            .plant
-            .output_adjoint(place, &mut self.scratch, weights, &mut sums);
-        (by.0, by.1, by_inputs)
+        let place = self.pass.place(t, &z, held);
+        let plant = self.pass.system.plant;
+        let by = plant.output_gradient(place, &mut self.scratch, output, scale);
+        (by.z, by.p, by.u)
     }
 }
 
@@ -537,12 +508,4 @@ fn by_input(
 
 fn is_parameter(direction: &Direction) -> bool {
     matches!(direction, Direction::Value(Unknown::Parameter(_)))
-}
-
-fn recording_time(recording: &crate::Recording, action: Action) -> f64 {
-    match action {
-        Action::Switch { row, .. } => recording.time_of(row),
-        Action::Measure { row, .. } => recording.times()[row],
-        Action::Advance(advance) => advance.t,
-    }
 }

@@ -53,7 +53,6 @@ pub struct Inconsistency {
 }
 
 /// Recorded motions and a model.
-#[derive(Debug)]
 pub struct Consistency<'a> {
     relations: Relations<'a>,
     track: Track,
@@ -79,17 +78,6 @@ impl<'a> Consistency<'a> {
     ) -> Result<Self, InverseError> {
         if relations.is_empty() {
             return Err(InverseError::NoRelation);
-        }
-        let info = relations.model().info();
-        let (parameters_len, measured) = (info.parameter_len(), relations.measured().len());
-        for sought in &sought {
-            let (index, len) = match *sought {
-                Sought::Parameter(index) => (index, parameters_len),
-                Sought::Bias(index) => (index, measured),
-            };
-            if index >= len {
-                return Err(InverseError::Unknown { index, len });
-            }
         }
         Ok(Self {
             relations,

@@ -245,35 +245,25 @@ impl<'a> Relations<'a> {
             by_motion: [zero(), zero(), zero()],
             by_parameters: DMatrix::zeros(count, p.len()),
         };
-        let mut tape = Tape::new(self.model);
         let s = self.model.info().speeds;
         for (row, n) in rows.column_iter().enumerate() {
             // μ: derivatives with respect to q̈.
             let inertia = place.equations.mass.tr_mul(&n);
             let by_acceleration = place.inverse.tr_mul(&inertia);
-            tape.clear();
             // M (ω̇ − ω̇ of the model) is M ω̇ + b − Π: its derivative in two parts.
-            self.weigh(
-                &mut tape,
-                place,
-                &n.into_owned(),
-                &inertia,
-                &by_acceleration,
-                p,
-            );
-            tape.pull(self.model, place, p);
-            let by_speed = DVector::from_column_slice(&tape.x[..s]);
+            let weights = self.weights(place, &n.into_owned(), &inertia, &by_acceleration, p);
+            let (by_x, mut by_p) = self.pull(&weights, place, p);
+            let by_speed = DVector::from_column_slice(&by_x[..s]);
             let by_rate = place.inverse.tr_mul(&by_speed);
-            let mut by_q = self.measured_part(&tape.x[s..]);
-            let mut by_p = DVector::from_column_slice(&tape.p);
+            let mut by_q = self.measured_part(&by_x[s..]);
             // ω follows from q̇ through T, which depends on q and p.
-            tape.clear();
+            let mut weights = vec![0.0; weights.len()];
             for (&index, weight) in self.measured.iter().zip(by_rate.iter()) {
-                tape.weights[s + index] = -weight;
+                weights[s + index] = -weight;
             }
-            tape.pull(self.model, place, p);
-            by_q += self.measured_part(&tape.x[s..]);
-            by_p += DVector::from_column_slice(&tape.p);
+            let (by_x, by_p_of_rates) = self.pull(&weights, place, p);
+            by_q += self.measured_part(&by_x[s..]);
+            by_p += by_p_of_rates;
             let by_v = &by_rate - place.carried.tr_mul(&by_acceleration);
             all.by_motion[0].set_row(row, &by_q.transpose());
             all.by_motion[1].set_row(row, &by_v.transpose());
@@ -284,30 +274,29 @@ impl<'a> Relations<'a> {
     }
 
     /// Weights of ẋ, A and M whose sum has the derivatives of nᵀ (M ω̇ + b − Π) with q̈ held.
-    fn weigh(
+    fn weights(
         &self,
-        tape: &mut Tape,
         place: &Place,
         n: &DVector<f64>,
         inertia: &DVector<f64>,
         by_acceleration: &DVector<f64>,
         p: &[f64],
-    ) {
+    ) -> Vec<f64> {
         let info = self.model.info();
         let (states, s) = (info.state_len(), info.speeds);
-        let modelled = tape.rates(self.model, place, p);
-        let off: Vec<f64> = (0..s)
-            .map(|i| place.accelerations[i] - modelled[i])
-            .collect();
+        let mut modelled = vec![0.0; states];
+        self.model.rates(place.at(p), &mut modelled);
+        let mass = states * (1 + states + info.input_len());
+        let mut weights = vec![0.0; mass + s * s];
         for i in 0..s {
-            tape.weights[i] = -inertia[i];
+            weights[i] = -inertia[i];
             for j in 0..s {
-                tape.mass(i, j, n[i] * off[j]);
+                weights[mass + i * s + j] = n[i] * (place.accelerations[j] - modelled[j]);
             }
         }
         // q̈ = T ω̇ + (∂q̇/∂q) q̇: with q̈ held, ω̇ compensates changes of both.
         for (&index, weight) in self.measured.iter().zip(by_acceleration.iter()) {
-            let row = &mut tape.weights[states + (s + index) * states..][..states];
+            let row = &mut weights[states + (s + index) * states..][..states];
             for j in 0..s {
                 row[j] = -weight * place.accelerations[j];
             }
@@ -315,6 +304,20 @@ impl<'a> Relations<'a> {
                 *entry = -weight * rate;
             }
         }
+        weights
+    }
+
+    /// The gradient of a weighted sum with respect to the state and the parameters.
+    fn pull(&self, weights: &[f64], place: &Place, p: &[f64]) -> (Vec<f64>, DVector<f64>) {
+        let (mut x, mut u) = (vec![0.0; place.x.len()], vec![0.0; place.u.len()]);
+        let mut by_p = DVector::zeros(p.len());
+        let by = Gradient {
+            x: &mut x,
+            u: &mut u,
+            p: by_p.as_mut_slice(),
+        };
+        self.model.adjoint(place.at(p), weights, by);
+        (x, by_p)
     }
 
     fn measured_part(&self, coordinates: &[f64]) -> DVector<f64> {
@@ -323,18 +326,17 @@ impl<'a> Relations<'a> {
     }
 }
 
-impl std::fmt::Debug for Relations<'_> {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .debug_struct("Relations")
-            .field("model", &self.model.info().name)
-            .field("measured", &self.measured)
-            .field("reference", &self.reference)
-            .finish()
-    }
-}
-
 impl Place {
+    /// Where the model is evaluated.
+    fn at<'a>(&'a self, p: &'a [f64]) -> At<'a> {
+        At {
+            t: 0.0,
+            x: &self.x,
+            u: &self.u,
+            p,
+        }
+    }
+
     /// e.
     fn demand(&self) -> DVector<f64> {
         &self.equations.mass * &self.accelerations + &self.equations.free
@@ -350,65 +352,4 @@ fn pseudo_inverse(turn: &DMatrix<f64>, speeds: usize) -> Result<DMatrix<f64>, In
         return Err(InverseError::Undetermined { rank, unknowns });
     }
     Ok(singular.inverse(rank))
-}
-
-/// Weights of a sum, and its gradient.
-struct Tape {
-    weights: Vec<f64>,
-    /// Where the weights of M begin.
-    mass: usize,
-    speeds: usize,
-    x: Vec<f64>,
-    u: Vec<f64>,
-    p: Vec<f64>,
-}
-
-impl Tape {
-    fn new(model: &dyn Model) -> Self {
-        let info = model.info();
-        let (n, m, s) = (info.state_len(), info.input_len(), info.speeds);
-        let mass = n + n * n + n * m;
-        Self {
-            weights: vec![0.0; mass + s * s],
-            mass,
-            speeds: s,
-            x: vec![0.0; n],
-            u: vec![0.0; m],
-            p: vec![0.0; info.parameter_len()],
-        }
-    }
-
-    fn clear(&mut self) {
-        self.weights.fill(0.0);
-    }
-
-    fn mass(&mut self, i: usize, j: usize, weight: f64) {
-        self.weights[self.mass + i * self.speeds + j] = weight;
-    }
-
-    fn rates(&mut self, model: &dyn Model, place: &Place, p: &[f64]) -> Vec<f64> {
-        let mut rates = vec![0.0; self.x.len()];
-        model.rates(place.at(p), &mut rates);
-        rates
-    }
-
-    fn pull(&mut self, model: &dyn Model, place: &Place, p: &[f64]) {
-        let by = Gradient {
-            x: &mut self.x,
-            u: &mut self.u,
-            p: &mut self.p,
-        };
-        model.adjoint(place.at(p), &self.weights, by);
-    }
-}
-
-impl Place {
-    fn at<'a>(&'a self, p: &'a [f64]) -> At<'a> {
-        At {
-            t: 0.0,
-            x: &self.x,
-            u: &self.u,
-            p,
-        }
-    }
 }

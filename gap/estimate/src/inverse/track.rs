@@ -71,7 +71,7 @@ impl Piece {
 
     fn fit(&self, spacing: f64) -> Option<RegressionSpline> {
         let ends = [self.times[0], self.times[self.times.len() - 1]];
-        let basis = Basis::between(ends, spacing).ok()?;
+        let basis = Basis::between(ends, spacing)?;
         RegressionSpline::fit(basis, &self.times, &self.values)
     }
 

@@ -104,15 +104,6 @@ pub(crate) struct Pass<'a> {
 }
 
 impl<'a> Pass<'a> {
-    /// Filters a recording.
-    pub(crate) fn over(
-        &mut self,
-        recording: &Recording,
-        actions: &[Action],
-    ) -> Result<(), EstimateError> {
-        (actions.iter()).try_for_each(|&action| self.act(recording, action))
-    }
-
     /// Before the first action. Without an empty `tape` to keep it on only the innovations remain.
     pub(crate) fn new(
         system: StateSpace<'a>,
@@ -145,11 +136,7 @@ impl<'a> Pass<'a> {
     pub(crate) fn blank(system: StateSpace<'a>, values: &'a [f64], run: usize) -> Self {
         let StateSpace { setup, plant, .. } = system;
         let (n, info) = (plant.n, plant.info());
-        let outputs = if setup.reads_outputs() {
-            info.output_len()
-        } else {
-            0
-        };
+        let outputs = setup.output_len();
         let sizes = Sizes {
             n,
             commands: command::NUMBERS * info.declared_inputs,
@@ -193,25 +180,19 @@ impl<'a> Pass<'a> {
             self.tape.clear();
         }
         match action {
-            Action::Advance(advance) => {
-                self.advance(advance, 1)?;
-                self.close(advance.t + advance.h)
-            }
+            Action::Advance(advance) => self.advance(advance, 1)?,
             Action::Switch { row, input } => {
                 let first = self.records.is_empty();
                 let StateSpace { setup, layout, .. } = self.system;
                 let switch = Switch { row, input, first };
                 switch.apply(&mut self.held, setup, layout, self.values, recording);
-                if first {
-                    self.close(recording.time_of(row))?;
+                if !first {
+                    return Ok(());
                 }
-                Ok(())
             }
-            Action::Measure { row, channel } => {
-                self.measure(recording, row, channel)?;
-                self.close(recording.times()[row])
-            }
+            Action::Measure { row, channel } => self.measure(recording, row, channel)?,
         }
+        self.close(action.end(recording))
     }
 
     pub(crate) fn log_likelihood(&self) -> f64 {
@@ -221,8 +202,12 @@ impl<'a> Pass<'a> {
             .sum()
     }
 
-    pub(crate) fn p(&self) -> &'a [f64] {
-        &self.values[..self.system.layout.parameters]
+    /// A point at a time, state and commands.
+    pub(crate) fn place<'p>(&self, t: f64, z: &'p [f64], held: &'p [f64]) -> Place<'p>
+    where
+        'a: 'p,
+    {
+        Place::new(self.system.layout, self.values, t, z, held)
     }
 
     pub(crate) fn lags(&self) -> &'a [f64] {
@@ -271,18 +256,12 @@ impl<'a> Pass<'a> {
         let tape = self.record(self.sizes.step_len());
         self.records.push(Record::Advance { advance, tape });
         let (n, d) = (self.sizes.n, self.sizes.disturbances);
-        let (p, lags, h) = (self.p(), self.lags(), advance.h);
+        let h = advance.h;
         let mut on = self.sizes.step(&mut self.tape[tape..]);
         on.held.copy_from_slice(&self.held);
         on.root.copy_from_slice(&self.root);
         on.stages.z[..n].copy_from_slice(&self.z);
-        let span = Span {
-            t: advance.t,
-            h,
-            held: on.held,
-            p,
-            lags,
-        };
+        let span = Span::new(self.system.layout, self.values, advance, on.held);
         if self.is_disturbed {
             directions(
                 self.system.setup,
@@ -389,7 +368,7 @@ impl<'a> Pass<'a> {
         let first = self.samples.len();
         let measured = recording.measured(row);
         let t = recording.times()[row];
-        let channels = self.sampled(measured, only);
+        let channels = self.system.setup.sampled(measured, only);
         let (held, lags) =
             self.linearise_outputs(recording, row, self.sampling_time(t, only), &channels);
         let prior = self.record(channels.len() * self.sizes.sample_len());
@@ -402,8 +381,7 @@ impl<'a> Pass<'a> {
                 tape: prior + count * self.sizes.sample_len(),
                 prior,
             };
-            let quantity = self.keep(reading);
-            self.update(reading, quantity)?;
+            self.update(reading)?;
         }
         let samples = first..self.samples.len();
         let row = only.is_none().then_some(row);
@@ -427,16 +405,6 @@ impl<'a> Pass<'a> {
         let channel = &self.system.setup.channels[sample.channel];
         let delayed = channel.longest_delay.map(|_| sample.channel);
         self.sampling_time(sample.t, delayed)
-    }
-
-    /// The channels with a value among those of a row: one delayed channel, or all others.
-    fn sampled(&self, measured: &[f64], only: Option<usize>) -> Vec<usize> {
-        let channels = &self.system.setup.channels;
-        let is_sampled = |channel: &usize| {
-            let late = channels[*channel].longest_delay.is_some();
-            only.map_or(!late, |only| only == *channel) && !measured[*channel].is_nan()
-        };
-        (0..channels.len()).filter(is_sampled).collect()
     }
 
     /// Evaluates the outputs and their slopes if any is sampled; then returns their inputs, and those that lag.
@@ -468,18 +436,23 @@ impl<'a> Pass<'a> {
         (read.held, read.lags)
     }
 
-    /// Records the state, the root of P and the output row before a scalar update. Returns the quantity without scale
-    /// and bias, in the state before the first scalar of this time.
-    fn keep(&mut self, reading: Reading) -> f64 {
+    /// Updates the state and the root of P by a scalar, after recording both and the output row. The quantity without scale
+    /// and bias is that in the state before the first scalar of this time.
+    fn update(&mut self, reading: Reading) -> Result<(), EstimateError> {
         let Reading {
+            row,
             channel,
+            t,
+            measured,
             tape,
             prior,
-            ..
         } = reading;
-        let n = self.sizes.n;
+        let (n, layout, values) = (self.sizes.n, self.system.layout, self.values);
+        let gain = values[layout.scale(channel)];
+        let bias = values[layout.bias(channel)];
+        let noise = values[layout.noise(channel)];
         let (earlier, rest) = self.tape.split_at_mut(tape);
-        let SampleTape { c, z, root, .. } = self.sizes.sample(rest);
+        let SampleTape { c, a, z, root } = self.sizes.sample(rest);
         z.copy_from_slice(&self.z);
         root.copy_from_slice(&self.root);
         c.fill(0.0);
@@ -497,26 +470,7 @@ impl<'a> Pass<'a> {
                 self.outputs[output]
             }
         };
-        scale(self.values[self.system.layout.scale(channel)], c);
-        quantity
-    }
-
-    /// Updates the state and the root of P by a scalar.
-    fn update(&mut self, reading: Reading, quantity: f64) -> Result<(), EstimateError> {
-        let Reading {
-            row,
-            channel,
-            t,
-            measured,
-            tape,
-            prior,
-        } = reading;
-        let n = self.sizes.n;
-        let (earlier, rest) = self.tape.split_at_mut(tape);
-        let SampleTape { c, a, z, root } = self.sizes.sample(rest);
-        let gain = self.values[self.system.layout.scale(channel)];
-        let bias = self.values[self.system.layout.bias(channel)];
-        let noise = self.values[self.system.layout.noise(channel)];
+        scale(gain, c);
         let residual = measured - gain * quantity - bias;
         let r = noise * noise;
         let mut white = residual;

@@ -6,12 +6,9 @@ use crate::data::recording::Recording;
 use crate::data::setup::Measured;
 use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
-use crate::matrix::add_scaled;
-use crate::motion::closure::Closure;
-use crate::motion::command::{OfOutputs, Switch};
-use crate::motion::plant::{Place, Scratch, StateSpace};
+use crate::motion::plant::{Place, StateSpace};
 use crate::motion::timeline::{Action, Advance};
-use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, decays, is_uneven, within};
+use crate::motion::unfiltered::Unfiltered;
 
 /// Prediction error of a measured scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,27 +34,16 @@ impl Estimation<'_> {
         horizon: f64,
         origins: &[usize],
     ) -> Result<Vec<Predicted>, EstimateError> {
-        self.check(values)?;
-        self.layout().place(Unknown::Initial { run, state: 0 })?;
-        let recording = &self.recordings()[run];
-        let actions = self.actions(run, values);
-        let mut pass = self.fresh(run, values, &actions, None, &[]);
-        let mut walk = Walk::new(&pass, recording);
         let mut predicted = Vec::new();
-        for (index, &action) in actions.iter().enumerate() {
-            pass.act(recording, action)?;
-            if let Action::Measure { row, channel: None } = action
-                && origins.binary_search(&row).is_ok()
-            {
-                walk.begin(&pass, row);
-                walk.on(&actions[index + 1..], horizon, &mut predicted);
-            }
-        }
+        let mut walk = None;
+        self.at_origins(values, run, origins, |pass, row, later| {
+            let walk = walk.get_or_insert_with(|| Walk::new(pass, &self.recordings()[run]));
+            walk.begin(pass, row);
+            walk.on(later, horizon, &mut predicted);
+        })?;
         Ok(predicted)
     }
-}
 
-impl Estimation<'_> {
     /// Variances in SI of the errors of [`Estimation::predictions`] if the model and its levels are
     /// correct, each with its origin and its channel.
     pub fn expected_errors(
@@ -67,26 +53,15 @@ impl Estimation<'_> {
         horizon: f64,
         origins: &[usize],
     ) -> Result<Vec<(usize, usize, f64)>, EstimateError> {
-        self.check(values)?;
-        self.layout().place(Unknown::Initial { run, state: 0 })?;
-        let recording = &self.recordings()[run];
-        let actions = self.actions(run, values);
-        let mut pass = self.fresh(run, values, &actions, None, &[]);
         let mut expected = Vec::new();
-        for (index, &action) in actions.iter().enumerate() {
-            pass.act(recording, action)?;
-            let Action::Measure { row, channel: None } = action else {
-                continue;
-            };
-            if origins.binary_search(&row).is_err() {
-                continue;
-            }
-            let mut ahead = self.fresh(run, values, &actions, None, &[]);
+        self.at_origins(values, run, origins, |pass, row, later| {
+            let recording = &self.recordings()[run];
+            let mut ahead = self.fresh(run, values, later, None, &[]);
             ahead.z.copy_from_slice(&pass.z);
             ahead.root.copy_from_slice(&pass.root);
             ahead.held.copy_from_slice(&pass.held);
             let mut open = vec![true; self.setup().channels.len()];
-            for &action in &actions[index + 1..] {
+            for &action in later {
                 let Action::Measure { row: met, .. } = action else {
                     // Predictions that overflow have no expected variance.
                     if ahead.act(recording, action).is_err() {
@@ -113,8 +88,31 @@ impl Estimation<'_> {
                     break;
                 }
             }
-        }
+        })?;
         Ok(expected)
+    }
+
+    /// Passes on the filter at each of the rows `origins`, which increase, with the actions that follow.
+    fn at_origins<'s>(
+        &'s self,
+        values: &'s [f64],
+        run: usize,
+        origins: &[usize],
+        mut begin: impl FnMut(&Pass<'s>, usize, &[Action]),
+    ) -> Result<(), EstimateError> {
+        self.check(values)?;
+        self.layout().place(Unknown::Initial { run, state: 0 })?;
+        let actions = self.actions(run, values);
+        let mut pass = self.fresh(run, values, &actions, None, &[]);
+        for (index, &action) in actions.iter().enumerate() {
+            pass.act(&self.recordings()[run], action)?;
+            if let Action::Measure { row, channel: None } = action
+                && origins.binary_search(&row).is_ok()
+            {
+                begin(&pass, row, &actions[index + 1..]);
+            }
+        }
+        Ok(())
     }
 }
 
@@ -128,67 +126,36 @@ fn is_reported(recording: &Recording, origin: usize, row: usize, horizon: f64) -
 
 /// A motion without corrections.
 struct Walk<'a> {
-    system: StateSpace<'a>,
-    values: &'a [f64],
-    recording: &'a Recording,
+    motion: Unfiltered<'a>,
     origin: usize,
-    z: Vec<f64>,
-    held: Vec<f64>,
-    scratch: Scratch,
-    closure: Option<Closure>,
-    /// States and rates of the stages.
-    stages: Vec<f64>,
-    rates: Vec<f64>,
-    /// ∂ż/∂z at the first stage.
-    slopes: Vec<f64>,
 }
 
 impl<'a> Walk<'a> {
     fn new(pass: &Pass<'a>, recording: &'a Recording) -> Self {
-        let n = pass.sizes.n;
-        Self {
-            system: pass.system,
-            values: pass.values,
-            recording,
-            origin: 0,
-            z: vec![0.0; n],
-            held: vec![0.0; pass.sizes.commands],
-            scratch: pass.system.plant.scratch(),
-            closure: pass.closure.clone(),
-            stages: vec![0.0; WEIGHTS.len() * n],
-            rates: vec![0.0; WEIGHTS.len() * n],
-            slopes: vec![0.0; n * n],
-        }
+        let mut motion = Unfiltered::new(pass.system, pass.values, recording);
+        motion.closure.clone_from(&pass.closure);
+        Self { motion, origin: 0 }
     }
 
     /// Starts from the state of the filter.
     fn begin(&mut self, pass: &Pass<'_>, row: usize) {
-        self.z.copy_from_slice(&pass.z);
-        self.held.copy_from_slice(&pass.held);
+        self.motion.z.copy_from_slice(&pass.z);
+        self.motion.held.copy_from_slice(&pass.held);
         self.origin = row;
     }
 
     /// Advances until every channel was sampled at the horizon; for an infinite one all samples are
     /// reported.
     fn on(&mut self, actions: &[Action], horizon: f64, predicted: &mut Vec<Predicted>) {
-        let mut open = vec![true; self.system.setup.channels.len()];
+        let mut open = vec![true; self.motion.system.setup.channels.len()];
         let everything = horizon.is_infinite();
         for &action in actions {
             match action {
                 Action::Advance(advance) => self.advance(advance),
-                Action::Switch { row, input } => {
-                    let StateSpace { setup, layout, .. } = self.system;
-                    let switch = Switch {
-                        row,
-                        input,
-                        first: false,
-                    };
-                    let (values, recording) = (self.values, self.recording);
-                    switch.apply(&mut self.held, setup, layout, values, recording);
-                }
+                Action::Switch { row, input } => self.motion.switch(row, input, false),
                 Action::Measure { row, channel } => {
                     let horizon = if everything { 0.0 } else { horizon };
-                    if !is_reported(self.recording, self.origin, row, horizon) {
+                    if !is_reported(self.motion.recording, self.origin, row, horizon) {
                         continue;
                     }
                     self.compare(row, channel, &mut open, predicted);
@@ -210,36 +177,35 @@ impl<'a> Walk<'a> {
         open: &mut [bool],
         predicted: &mut Vec<Predicted>,
     ) {
-        let measured = self.recording.measured(row);
+        let motion = &mut self.motion;
+        let StateSpace {
+            setup,
+            plant,
+            layout,
+        } = motion.system;
+        let measured = motion.recording.measured(row);
         let mut outputs = Vec::new();
-        for (channel, open) in open.iter_mut().enumerate() {
-            let late = self.system.setup.channels[channel].longest_delay.is_some();
-            let sampled = only.map_or(!late, |only| only == channel);
-            if !*open || !sampled || measured[channel].is_nan() {
+        for channel in setup.sampled(measured, only) {
+            if !std::mem::take(&mut open[channel]) {
                 continue;
             }
-            let quantity = match self.system.setup.reads(channel) {
-                Measured::State(state) => self.z[state],
+            let quantity = match setup.reads(channel) {
+                Measured::State(state) => motion.z[state],
                 Measured::Output(output) => {
                     if outputs.is_empty() {
-                        outputs = vec![0.0; self.system.plant.info().output_len()];
-                        let delay = |channel| self.values[self.system.layout.sensor_delay(channel)];
-                        let t = self.recording.times()[row] - only.map_or(0.0, delay);
-                        let StateSpace { setup, layout, .. } = self.system;
-                        let (recording, held) = (self.recording, &self.held);
-                        let read = OfOutputs::of(recording, row, held, setup, layout, self.values);
-                        let place = Place::new(layout, self.values, t, &self.z, &read.held);
-                        let (plant, scratch) = (self.system.plant, &mut self.scratch);
-                        let z = plant.read_state(place, scratch, &read);
-                        plant.output_values(Place { z: &z, ..place }, scratch, &mut outputs);
+                        outputs = vec![0.0; plant.info().output_len()];
+                        let (read, t) = motion.reading(row, only);
+                        let place = Place::new(layout, motion.values, t, &motion.z, &read.held);
+                        let z = plant.read_state(place, &mut motion.scratch, &read);
+                        let place = Place { z: &z, ..place };
+                        plant.output_values(place, &mut motion.scratch, &mut outputs);
                     }
                     outputs[output]
                 }
             };
-            let scale = self.values[self.system.layout.scale(channel)];
-            let bias = self.values[self.system.layout.bias(channel)];
+            let scale = motion.values[layout.scale(channel)];
+            let bias = motion.values[layout.bias(channel)];
             let residual = measured[channel] - scale * quantity - bias;
-            *open = false;
             predicted.push(Predicted {
                 origin: self.origin,
                 row,
@@ -253,64 +219,21 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// A step of the same method as that of the filter.
     fn advance(&mut self, advance: Advance) {
         self.step(advance, 1);
-        let t = advance.t + advance.h;
-        if let Some(closure) = &mut self.closure {
-            let open = self.z.clone();
-            let place = Place::new(self.system.layout, self.values, t, &open, &self.held);
-            // A prediction without a solution of the loop constraints has infinite errors.
-            if closure
-                .close(self.system.plant, place, &mut self.scratch, &mut self.z)
-                .is_err()
-            {
-                self.z.fill(f64::NAN);
-            }
+        // A prediction without a solution of the loop constraints has infinite errors.
+        if self.motion.close(advance.t + advance.h).is_err() {
+            self.motion.z.fill(f64::NAN);
         }
     }
 
     /// A step, or parts of it if it is too long.
     fn step(&mut self, advance: Advance, of: u32) {
-        let (Advance { t, h, .. }, n) = (advance, self.z.len());
-        let plant = self.system.plant;
-        let has_corners = self.system.setup.has_corners && self.closure.is_none();
-        let is_checked = has_corners && of < MOST_PARTS;
-        let own = plant.info().state_len();
-        let (mut after, mut parts) = (self.z.clone(), 1);
-        self.stages[..n].copy_from_slice(&self.z);
-        for (stage, weight) in WEIGHTS.into_iter().enumerate() {
-            let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
-            let (stages, later) = self.stages.split_at_mut((stage + 1) * n);
-            let (t, z) = (t + part * h, &stages[stage * n..]);
-            let place = Place::new(self.system.layout, self.values, t, z, &self.held);
-            let rates = &mut self.rates[stage * n..(stage + 1) * n];
-            if is_checked && stage == 0 {
-                plant.jacobian(place, &mut self.scratch, rates, &mut self.slopes);
-                parts = decays(&self.slopes, n, own, h);
-                if parts > 1 {
-                    break;
-                }
-            } else {
-                plant.rates(place, &mut self.scratch, rates);
+        let parts = self.motion.step(advance, of, None);
+        if parts > 1 {
+            for part in advance.parts(parts) {
+                self.step(part, of * parts);
             }
-            add_scaled(h * weight, rates, &mut after);
-            if let Some(next) = STAGES.get(stage) {
-                later[..n].copy_from_slice(&self.z);
-                add_scaled(h * next, rates, &mut later[..n]);
-            }
-        }
-        if is_checked && parts == 1 {
-            let is_uneven = is_uneven(&self.stages, &self.rates, &self.slopes, own);
-            parts += u32::from(is_uneven);
-        }
-        if parts == 1 {
-            self.z = after;
-            return;
-        }
-        let parts = within(parts, of);
-        for part in advance.parts(parts) {
-            self.step(part, of * parts);
         }
     }
 }

@@ -12,7 +12,6 @@ use crate::EstimateError;
 use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::{add, multiply};
-use crate::motion::plant::Place;
 use crate::motion::timeline::Advance;
 
 /// Pivots of a root below this, relative to their row, are rounding: there is no variance in that
@@ -66,7 +65,7 @@ impl Estimation<'_> {
                 let independent: Vec<usize> = match &mut closure {
                     Some(closure) => {
                         let t = advance.t + advance.h;
-                        let place = Place::new(self.layout(), values, t, on.after, on.held);
+                        let place = pass.place(t, on.after, on.held);
                         closure.choose(pass.system.plant, place, &mut scratch);
                         closure.independent().collect()
                     }
@@ -83,7 +82,7 @@ impl Estimation<'_> {
         if let Some(closure) = &mut closure {
             for row in &mut rows {
                 let (t, open) = (row.t, row.state.clone());
-                let place = Place::new(self.layout(), values, t, &open, &pass.held);
+                let place = pass.place(t, &open, &pass.held);
                 closure
                     .close(pass.system.plant, place, &mut scratch, &mut row.state)
                     .map_err(|source| EstimateError::Open { run, t, source })?;

@@ -210,7 +210,7 @@ impl Closure {
         scratch: &mut Scratch,
         root: &[f64],
         covariance: &mut [f64],
-        sums: &mut Sums<'_>,
+        sums: &mut Sums,
     ) {
         let (n, count) = (self.n, self.dependent.len());
         // The derivative with respect to N is 2 Λ N P.
@@ -259,7 +259,7 @@ impl Closure {
         );
         plant.pass_on_parameters(1.0, &mut by_p, sums);
         // Nᵀ λ and Nᵀ Λ N.
-        self.gather(sums.z);
+        self.gather(&mut sums.z);
         self.gather(covariance);
         let mut row = vec![0.0; n];
         for line in covariance.chunks_exact_mut(n) {

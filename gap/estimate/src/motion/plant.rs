@@ -87,9 +87,7 @@ pub(crate) struct StateSpace<'a> {
 /// Work arrays.
 #[derive(Debug, Clone)]
 pub(crate) struct Scratch {
-    u: Vec<f64>,
-    /// Parameters as the model sees them.
-    p: Vec<f64>,
+    seen: Seen,
     a: Vec<f64>,
     b: Vec<f64>,
     /// Derivatives with respect to the parameters.
@@ -104,16 +102,37 @@ pub(crate) struct Scratch {
     pub(super) output_slopes: Vec<f64>,
 }
 
+/// Inputs and parameters as the model sees them.
+#[derive(Debug, Clone)]
+struct Seen {
+    u: Vec<f64>,
+    p: Vec<f64>,
+}
+
 /// Accumulated derivatives.
-pub(crate) struct Sums<'a> {
+#[derive(Debug, Clone)]
+pub(crate) struct Sums {
     /// With respect to the states.
-    pub(crate) z: &'a mut [f64],
+    pub(crate) z: Vec<f64>,
     /// With respect to the parameters.
-    pub(crate) p: &'a mut [f64],
+    pub(crate) p: Vec<f64>,
     /// With respect to the time constants.
-    pub(crate) lags: &'a mut [f64],
+    pub(crate) lags: Vec<f64>,
     /// With respect to the declared inputs.
-    pub(crate) u: &'a mut [f64],
+    pub(crate) u: Vec<f64>,
+}
+
+impl Sums {
+    /// Zeros.
+    pub(crate) fn zeros(plant: &Plant<'_>) -> Self {
+        let info = plant.info();
+        Self {
+            z: vec![0.0; plant.n],
+            p: vec![0.0; info.parameter_len()],
+            lags: vec![0.0; plant.lagging.len() + plant.filters.len()],
+            u: vec![0.0; info.declared_inputs],
+        }
+    }
 }
 
 impl<'a> Plant<'a> {
@@ -159,16 +178,18 @@ impl<'a> Plant<'a> {
 
     pub(crate) fn scratch(&self) -> Scratch {
         let (n, m, s) = (self.n, self.m, self.speeds);
-        let zeros = |len| vec![0.0; len];
+        let zeros = |len: usize| vec![0.0; len];
         let k = self.info().parameter_len();
         let outputs = self.filtered_outputs();
         Scratch {
-            u: zeros(m),
-            p: zeros(k),
+            seen: Seen {
+                u: zeros(m),
+                p: zeros(k),
+            },
             by_p: zeros(self.info().state_len() * k),
             a: zeros(n * n),
             b: zeros(n * m),
-            weights: zeros(n + n * n + n * m + s * s),
+            weights: Vec::new(),
             gradient: zeros(n + m + k),
             mass: zeros(s * s),
             bias: zeros(s),
@@ -178,8 +199,9 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// Inputs and parameters of the model.
-    fn view(&self, place: Place<'_>, u: &mut [f64], p: &mut [f64]) {
+    /// The arguments of the model.
+    fn view<'s>(&self, place: Place<'s>, seen: &'s mut Seen) -> At<'s> {
+        let Seen { u, p } = seen;
         let states = self.info().state_len();
         let declared = self.info().declared_inputs;
         for (input, u) in u[..declared].iter_mut().enumerate() {
@@ -200,11 +222,12 @@ impl<'a> Plant<'a> {
             let signal = self.signals.get(signal);
             *u = signal.map_or(f64::NAN, |signal| signal.derivative(place.t, order));
         }
+        at(place, states, u, p)
     }
 
     /// Adds a gradient with respect to the arguments of the model, times a factor: lagging inputs
     /// and drifting parameters are states.
-    fn pass_on(&self, gradient: &mut [f64], factor: f64, sums: &mut Sums<'_>) {
+    fn pass_on(&self, gradient: &mut [f64], factor: f64, sums: &mut Sums) {
         let (n, k) = (self.info().state_len(), self.info().parameter_len());
         let [x, u, p] = pieces(gradient, [n, self.m, k]);
         add_scaled(factor, x, &mut sums.z[..n]);
@@ -218,11 +241,11 @@ impl<'a> Plant<'a> {
     }
 
     /// Adds a gradient with respect to the parameters of the model, times a factor.
-    pub(crate) fn pass_on_parameters(&self, factor: f64, p: &mut [f64], sums: &mut Sums<'_>) {
+    pub(crate) fn pass_on_parameters(&self, factor: f64, p: &mut [f64], sums: &mut Sums) {
         for (state, parameter) in self.drifts() {
             sums.z[state] += factor * std::mem::take(&mut p[parameter]);
         }
-        add_scaled(factor, p, sums.p);
+        add_scaled(factor, p, &mut sums.p);
     }
 
     /// The rates that lags and drifting parameters add, given the outputs that filters follow.
@@ -255,9 +278,7 @@ impl<'a> Plant<'a> {
 
     /// Sets the arguments of the model at a point.
     pub(crate) fn at(&self, place: Place<'_>, scratch: &mut Scratch, tell: impl FnOnce(At<'_>)) {
-        let Scratch { u, p, .. } = scratch;
-        self.view(place, u, p);
-        tell(at(place, self.info().state_len(), u, p));
+        tell(self.view(place, &mut scratch.seen));
     }
 
     /// ∂ẋ/∂p of the model's own states.
@@ -275,14 +296,12 @@ impl<'a> Plant<'a> {
     /// ż.
     pub(crate) fn rates(&self, place: Place<'_>, scratch: &mut Scratch, rates: &mut [f64]) {
         let n = self.info().state_len();
-        let Scratch { u, p, outputs, .. } = scratch;
-        self.view(place, u, p);
-        let at = at(place, n, u, p);
+        let at = self.view(place, &mut scratch.seen);
         self.model.rates(at, &mut rates[..n]);
-        if !outputs.is_empty() {
-            self.model.outputs(at, outputs);
+        if !scratch.outputs.is_empty() {
+            self.model.outputs(at, &mut scratch.outputs);
         }
-        self.added_rates(place, outputs, rates);
+        self.added_rates(place, &scratch.outputs, rates);
     }
 
     /// ż and ∂ż/∂z.
@@ -295,10 +314,9 @@ impl<'a> Plant<'a> {
     ) {
         let (all, n, m) = (self.n, self.info().state_len(), self.m);
         let Scratch {
-            u, p, a, b, by_p, ..
+            seen, a, b, by_p, ..
         } = scratch;
-        self.view(place, u, p);
-        let at = at(place, n, u, p);
+        let at = self.view(place, seen);
         if all == n {
             self.model.jacobians(at, rates, slopes, &mut b[..n * m]);
             return;
@@ -332,44 +350,13 @@ impl<'a> Plant<'a> {
         place: Place<'_>,
         scratch: &mut Scratch,
         [lambda, slopes, mass]: [&[f64]; 3],
-        sums: &mut Sums<'_>,
+        sums: &mut Sums,
     ) {
-        let (all, n, s) = (self.n, self.info().state_len(), self.speeds);
-        let Scratch {
-            u,
-            p,
-            weights,
-            gradient,
-            ..
-        } = scratch;
-        self.view(place, u, p);
-        let [rates, a, b, m] = pieces(weights, [n, n * n, n * self.m, s * s]);
-        rates.copy_from_slice(&lambda[..n]);
-        for (row, slopes) in slopes.chunks_exact(all).take(n).enumerate() {
-            a[row * n..(row + 1) * n].copy_from_slice(&slopes[..n]);
-            for (&weight, &input) in slopes[n..].iter().zip(self.lagging) {
-                b[row * self.m + input] = weight;
-            }
-        }
-        m.copy_from_slice(mass);
-        let used = n + n * n + n * self.m + s * s;
-        let adjoint = |p: &[f64], weights: &[f64], gradient: &mut [f64]| {
-            let by = self.cut(gradient);
-            self.model.adjoint(at(place, n, u, p), weights, by);
-        };
-        adjoint(p, &weights[..used], gradient);
-        self.pass_on(gradient, 1.0, sums);
-        // ⟨Λ, ∂ẋ/∂p⟩ is the derivative of ⟨Λ, ẋ⟩ with respect to a drifting parameter; the same
-        // holds for the gradients.
-        for (state, parameter) in self.drifts() {
-            weights.fill(0.0);
-            for (weight, slopes) in weights.iter_mut().zip(slopes.chunks_exact(all).take(n)) {
-                *weight = slopes[state];
-            }
-            self.differentiated(p, parameter, gradient, sums, |p, gradient| {
-                adjoint(p, &weights[..used], gradient);
-            });
-        }
+        let (all, n) = (self.n, self.info().state_len());
+        let own = [&lambda[..n], &slopes[..n * all], mass];
+        self.pull(place, scratch, own, sums, |at, weights, by| {
+            self.model.adjoint(at, weights, by);
+        });
         for (lag, (&input, &tau)) in self.lagging.iter().zip(place.lags).enumerate() {
             let (lambda, slope) = (lambda[n + lag], slopes[(n + lag) * (all + 1)]);
             sums.z[n + lag] -= lambda / tau;
@@ -380,6 +367,55 @@ impl<'a> Plant<'a> {
         self.filter_adjoint(place, scratch, [lambda, slopes], sums);
     }
 
+    /// Adds to `sums` the gradient of ⟨μ, y⟩ + ⟨Γ, ∂y/∂z⟩ + ⟨K, M⟩ for quantities y of the model: its rates or its
+    /// outputs, of which `adjoint` evaluates the adjoint.
+    fn pull(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        [mu, slopes, mass]: [&[f64]; 3],
+        sums: &mut Sums,
+        adjoint: impl Fn(At<'_>, &[f64], Gradient<'_>),
+    ) {
+        let (all, n, rows) = (self.n, self.info().state_len(), mu.len());
+        let Scratch {
+            seen,
+            weights,
+            gradient,
+            ..
+        } = scratch;
+        self.view(place, seen);
+        let Seen { u, p } = seen;
+        let lengths = [rows, rows * n, rows * self.m, mass.len()];
+        weights.clear();
+        weights.resize(lengths.iter().sum(), 0.0);
+        let [values, a, b, m] = pieces(weights, lengths);
+        values.copy_from_slice(mu);
+        for (row, slopes) in slopes.chunks_exact(all).enumerate() {
+            a[row * n..(row + 1) * n].copy_from_slice(&slopes[..n]);
+            for (&weight, &input) in slopes[n..].iter().zip(self.lagging) {
+                b[row * self.m + input] = weight;
+            }
+        }
+        m.copy_from_slice(mass);
+        let adjoint = |p: &[f64], weights: &[f64], gradient: &mut [f64]| {
+            adjoint(at(place, n, u, p), weights, self.cut(gradient));
+        };
+        adjoint(p, weights, gradient);
+        self.pass_on(gradient, 1.0, sums);
+        // ⟨Γ, ∂y/∂p⟩ is the derivative of ⟨Γ, y⟩ with respect to a drifting parameter; the same
+        // holds for the gradients.
+        for (state, parameter) in self.drifts() {
+            weights.fill(0.0);
+            for (weight, slopes) in weights.iter_mut().zip(slopes.chunks_exact(all)) {
+                *weight = slopes[state];
+            }
+            self.differentiated(p, parameter, gradient, sums, |p, gradient| {
+                adjoint(p, weights, gradient);
+            });
+        }
+    }
+
     /// Adds to `sums` the derivative of a gradient with respect to a parameter, by a central
     /// difference.
     fn differentiated(
@@ -387,7 +423,7 @@ impl<'a> Plant<'a> {
         p: &mut [f64],
         parameter: usize,
         gradient: &mut [f64],
-        sums: &mut Sums<'_>,
+        sums: &mut Sums,
         evaluate: impl Fn(&[f64], &mut [f64]),
     ) {
         let value = p[parameter];
@@ -414,17 +450,15 @@ impl<'a> Plant<'a> {
         scratch: &mut Scratch,
         columns: &mut [f64],
     ) {
-        let n = self.info().state_len();
         let Scratch {
-            u,
-            p,
+            seen,
             mass,
             bias,
             forces,
             ..
         } = scratch;
-        self.view(place, u, p);
-        self.model.appell(at(place, n, u, p), mass, bias, forces);
+        let at = self.view(place, seen);
+        self.model.appell(at, mass, bias, forces);
         appell_runtime::dense::lu_solve_in_place(mass, columns, self.speeds);
     }
 
@@ -444,12 +478,11 @@ impl<'a> Plant<'a> {
         let Some((duration, kinks)) = reading.averaging() else {
             return z;
         };
-        let Scratch { u, p, a, b, .. } = scratch;
-        let own = Place { z: &z, ..place };
-        self.view(own, u, p);
+        let Scratch { seen, a, b, .. } = scratch;
+        let at = self.view(Place { z: &z, ..place }, seen);
         let (a, b) = (&mut a[..n * n], &mut b[..n * m]);
         let mut rates = vec![0.0; n];
-        self.model.jacobians(at(own, n, u, p), &mut rates, a, b);
+        self.model.jacobians(at, &mut rates, a, b);
         let square = duration * duration / 24.0;
         for (state, z) in z[..n].iter_mut().enumerate() {
             let by_states = &a[state * n..(state + 1) * n];
@@ -468,10 +501,7 @@ impl<'a> Plant<'a> {
         scratch: &mut Scratch,
         outputs: &mut [f64],
     ) {
-        let Scratch { u, p, .. } = scratch;
-        self.view(place, u, p);
-        let at = at(place, self.info().state_len(), u, p);
-        self.model.outputs(at, outputs);
+        self.at(place, scratch, |at| self.model.outputs(at, outputs));
     }
 
     /// y, ∂y/∂z of all outputs.
@@ -483,9 +513,8 @@ impl<'a> Plant<'a> {
         slopes: &mut [f64],
     ) {
         let (all, n, l) = (self.n, self.info().state_len(), outputs.len());
-        let Scratch { u, p, gradient, .. } = scratch;
-        self.view(place, u, p);
-        let at = at(place, n, u, p);
+        let Scratch { seen, gradient, .. } = scratch;
+        let at = self.view(place, seen);
         let (mut c, mut d) = (vec![0.0; l * n], vec![0.0; l * self.m]);
         self.model.output_jacobians(at, outputs, &mut c, &mut d);
         let mut weights = vec![0.0; l + l * n + l * self.m];
@@ -514,35 +543,33 @@ impl<'a> Plant<'a> {
         place: Place<'_>,
         scratch: &mut Scratch,
         [mu, slopes]: [&[f64]; 2],
-        sums: &mut Sums<'_>,
+        sums: &mut Sums,
     ) {
-        let (all, n, l) = (self.n, self.info().state_len(), mu.len());
-        let Scratch { u, p, gradient, .. } = scratch;
-        self.view(place, u, p);
-        let mut weights = vec![0.0; l + l * n + l * self.m];
-        let [outputs, c, d] = pieces(&mut weights, [l, l * n, l * self.m]);
-        outputs.copy_from_slice(mu);
-        for (output, slopes) in slopes.chunks_exact(all).enumerate() {
-            c[output * n..(output + 1) * n].copy_from_slice(&slopes[..n]);
-            for (&weight, &input) in slopes[n..].iter().zip(self.lagging) {
-                d[output * self.m + input] = weight;
-            }
-        }
-        let adjoint = |p: &[f64], weights: &[f64], gradient: &mut [f64]| {
-            let by = self.cut(gradient);
-            self.model.output_adjoint(at(place, n, u, p), weights, by);
-        };
-        adjoint(p, &weights, gradient);
-        self.pass_on(gradient, 1.0, sums);
-        for (state, parameter) in self.drifts() {
-            weights.fill(0.0);
-            for (weight, slopes) in weights.iter_mut().zip(slopes.chunks_exact(all)) {
-                *weight = slopes[state];
-            }
-            self.differentiated(p, parameter, gradient, sums, |p, gradient| {
-                adjoint(p, &weights, gradient);
-            });
-        }
+        self.pull(
+            place,
+            scratch,
+            [mu, slopes, &[]],
+            sums,
+            |at, weights, by| {
+                self.model.output_adjoint(at, weights, by);
+            },
+        );
+    }
+
+    /// The gradient of an output, times a weight.
+    pub(crate) fn output_gradient(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        output: usize,
+        weight: f64,
+    ) -> Sums {
+        let count = self.info().output_len();
+        let (mut weights, no_slopes) = (vec![0.0; count], vec![0.0; count * self.n]);
+        weights[output] = weight;
+        let mut sums = Sums::zeros(self);
+        self.output_adjoint(place, scratch, [&weights, &no_slopes], &mut sums);
+        sums
     }
 }
 

@@ -92,7 +92,7 @@ impl Plant<'_> {
         place: Place<'_>,
         scratch: &mut Scratch,
         [lambda, slopes]: [&[f64]; 2],
-        sums: &mut Sums<'_>,
+        sums: &mut Sums,
     ) {
         self.linearise_filtered(place, scratch);
         let (n, l) = (self.n, scratch.outputs.len());
@@ -128,25 +128,13 @@ impl Plant<'_> {
         place: Place<'_>,
         scratch: &mut Scratch,
     ) -> Vec<(usize, Vec<f64>)> {
-        let (n, l) = (self.n, self.filtered_outputs());
-        let no_slopes = vec![0.0; l * n];
         let mut rows = Vec::new();
         for filter in &self.filters {
-            let Some(output) = filter.output() else {
-                continue;
-            };
-            let (mut z, mut lags) = (vec![0.0; n], vec![0.0; place.lags.len()]);
-            let (mut p, mut weights) = (vec![0.0; place.p.len()], vec![0.0; l]);
-            let mut u = vec![0.0; self.info().declared_inputs];
-            weights[output] = 1.0 / place.lags[filter.lag];
-            let mut sums = Sums {
-                z: &mut z,
-                p: &mut p,
-                lags: &mut lags,
-                u: &mut u,
-            };
-            self.output_adjoint(place, scratch, [&weights, &no_slopes], &mut sums);
-            rows.push((filter.state, p));
+            if let Some(output) = filter.output() {
+                let rate = 1.0 / place.lags[filter.lag];
+                let gradient = self.output_gradient(place, scratch, output, rate);
+                rows.push((filter.state, gradient.p));
+            }
         }
         rows
     }

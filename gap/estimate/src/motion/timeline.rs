@@ -15,6 +15,17 @@ pub(crate) enum Action {
     Measure { row: usize, channel: Option<usize> },
 }
 
+impl Action {
+    /// The time in s of the state after it.
+    pub(crate) fn end(self, recording: &Recording) -> f64 {
+        match self {
+            Self::Advance(advance) => advance.t + advance.h,
+            Self::Switch { row, .. } => recording.time_of(row),
+            Self::Measure { row, .. } => recording.times()[row],
+        }
+    }
+}
+
 /// A step of the integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Advance {

@@ -5,6 +5,8 @@
 
 use super::command;
 use super::plant::{Place, Plant, Scratch, Sums};
+use super::timeline::Advance;
+use crate::data::layout::Layout;
 use crate::matrix::{
     add, add_scaled, dot, multiply, multiply_transposed, pieces, scale, set_identity,
     transposed_multiply,
@@ -54,25 +56,33 @@ impl<'a> Stages<'a> {
     }
 }
 
-/// Time, length and inputs of a step.
+/// Time, length, inputs and parameters of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Span<'a> {
-    pub(crate) t: f64,
-    pub(crate) h: f64,
-    pub(crate) held: &'a [f64],
-    pub(crate) p: &'a [f64],
-    pub(crate) lags: &'a [f64],
+    /// Its start, without a state.
+    start: Place<'a>,
+    h: f64,
 }
 
 impl<'a> Span<'a> {
+    pub(crate) fn new(
+        layout: Layout,
+        values: &'a [f64],
+        advance: Advance,
+        held: &'a [f64],
+    ) -> Self {
+        Self {
+            start: Place::new(layout, values, advance.t, &[], held),
+            h: advance.h,
+        }
+    }
+
     /// The point of a stage.
     pub(crate) fn place(&self, stage: usize, z: &'a [f64]) -> Place<'a> {
         Place {
-            t: self.t + part(stage) * self.h,
+            t: self.start.t + part(stage) * self.h,
             z,
-            held: self.held,
-            p: self.p,
-            lags: self.lags,
+            ..self.start
         }
     }
 }
@@ -239,11 +249,11 @@ pub(crate) struct Reverse {
     k: Vec<f64>,
     kk: Vec<f64>,
     a: Vec<f64>,
-    z: Vec<f64>,
     x: Vec<f64>,
     product: Vec<f64>,
     no_mass: Vec<f64>,
-    u: Vec<f64>,
+    /// Of the stage.
+    sums: Sums,
 }
 
 impl Reverse {
@@ -253,11 +263,10 @@ impl Reverse {
             k: zeros(n),
             kk: zeros(n * n),
             a: zeros(n * n),
-            z: zeros(n),
             x: zeros(n * n),
             product: zeros(n * n),
             no_mass: zeros(plant.speeds * plant.speeds),
-            u: zeros(plant.info().declared_inputs),
+            sums: Sums::zeros(plant),
         }
     }
 }
@@ -289,29 +298,32 @@ pub(crate) fn adjoint(
     stages: &Stages<'_>,
     effects: Effects<'_>,
     back: &mut Reverse,
-    sums: &mut Sums<'_>,
+    sums: &mut Sums,
 ) -> ByEnds {
     let (n, h) = (plant.n, span.h);
     let nn = n * n;
     let mut by = ByEnds::default();
-    add(effects.after, sums.z);
+    add(effects.after, &mut sums.z);
+    // Stages add to the same sums, but for states and inputs.
+    std::mem::swap(&mut back.sums.p, &mut sums.p);
+    std::mem::swap(&mut back.sums.lags, &mut sums.lags);
     for i in (0..4).rev() {
         let (z, k) = (&stages.z[i * n..(i + 1) * n], &stages.k[i * n..(i + 1) * n]);
         let a = &stages.a[i * nn..(i + 1) * nn];
         let x = &stages.x[i * nn..(i + 1) * nn];
         // z⁺ and F hold the rates of this stage; so does the next stage, whose gradients are in
-        // `back.z` and `back.x`.
+        // `back.sums.z` and `back.x`.
         back.k.fill(0.0);
         back.kk.fill(0.0);
         if i < 3 {
-            add_scaled(h * STAGES[i], &back.z, &mut back.k);
+            add_scaled(h * STAGES[i], &back.sums.z, &mut back.k);
             add_scaled(h * STAGES[i], &back.x, &mut back.kk);
         }
         if effects.by_ends {
             multiply(a, x, n, &mut back.product);
             by.length += WEIGHTS[i] * (dot(effects.after, k) + dot(effects.f, &back.product));
             if i < 3 {
-                by.length += STAGES[i] * (dot(&back.z, k) + dot(&back.x, &back.product));
+                by.length += STAGES[i] * (dot(&back.sums.z, k) + dot(&back.x, &back.product));
             }
         }
         add_scaled(h * WEIGHTS[i], effects.after, &mut back.k);
@@ -324,27 +336,23 @@ pub(crate) fn adjoint(
             transposed_multiply(a, &back.kk, n, &mut back.x);
             &back.no_mass
         };
-        back.z.fill(0.0);
-        back.u.fill(0.0);
-        let mut of_stage = Sums {
-            z: &mut back.z,
-            p: sums.p,
-            lags: sums.lags,
-            u: &mut back.u,
-        };
+        back.sums.z.fill(0.0);
+        back.sums.u.fill(0.0);
         let weights = [back.k.as_slice(), &back.a, mass];
         let place = span.place(i, z);
-        plant.adjoint(place, scratch, weights, &mut of_stage);
-        add(&back.z, sums.z);
-        let later = sums.u.iter_mut().zip(&back.u).enumerate();
+        plant.adjoint(place, scratch, weights, &mut back.sums);
+        add(&back.sums.z, &mut sums.z);
+        let later = sums.u.iter_mut().zip(&back.sums.u).enumerate();
         for (input, (later, by)) in later {
             *later -= by * command::slope(place.held, input, place.t);
         }
         if effects.by_ends {
-            let by_t = command::by_time(place.held, &back.u, place.t);
+            let by_t = command::by_time(place.held, &back.sums.u, place.t);
             by.start += by_t;
             by.length += part(i) * by_t;
         }
     }
+    std::mem::swap(&mut back.sums.p, &mut sums.p);
+    std::mem::swap(&mut back.sums.lags, &mut sums.lags);
     by
 }

@@ -28,8 +28,6 @@ pub struct Differences {
     pub std: f64,
     /// Its relative standard deviation.
     pub relative_error: f64,
-    /// Order of the differences.
-    pub order: usize,
     /// Whether differences of the order below agree. Otherwise the motion is too fast for the
     /// sampling, and the level an upper bound.
     pub settled: bool,
@@ -82,7 +80,6 @@ fn level(records: &[(Vec<f64>, Vec<f64>)], order: usize) -> Option<Differences> 
     Some(Differences {
         std: (mean_square / NORMAL_TRIMMED).sqrt(),
         relative_error: TRIMMED_SPREAD * (0.5 * shared / count as f64).sqrt(),
-        order,
         settled: false,
     })
 }

@@ -7,10 +7,8 @@
 
 use nalgebra::DMatrix;
 
-use super::samples::{SamplesError, positive};
-
 /// Degree of the polynomials.
-pub const DEGREE: usize = 5;
+const DEGREE: usize = 5;
 /// Functions that are not zero between two knots.
 const LIVE: usize = DEGREE + 1;
 /// Pivots below this fraction of the largest mean that a coefficient is undetermined.
@@ -18,24 +16,29 @@ const OPEN: f64 = 1e-10;
 
 /// The basis functions `N_i`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Basis {
+pub(crate) struct Basis {
     start: f64,
     spacing: f64,
     intervals: usize,
 }
 
 impl Basis {
-    /// Between two times in s, with knots about `spacing` apart.
-    pub fn between([first, last]: [f64; 2], spacing: f64) -> Result<Self, SamplesError> {
-        let length = positive("record", last - first)?;
-        let wanted = (length / positive("distance of the knots", spacing)?).round();
+    /// Between two times in s, with knots about `spacing` apart; `None` unless the time between them and the spacing are
+    /// positive and finite.
+    pub(crate) fn between([first, last]: [f64; 2], spacing: f64) -> Option<Self> {
+        let is_positive = |length: f64| length > 0.0 && length.is_finite();
+        let length = last - first;
+        if !is_positive(length) || !is_positive(spacing) {
+            return None;
+        }
+        let wanted = (length / spacing).round();
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "positive; a cast to an integer saturates"
         )]
         let intervals = (wanted as usize).max(1);
-        Ok(Self {
+        Some(Self {
             start: first,
             spacing: length / intervals as f64,
             intervals,
@@ -43,24 +46,19 @@ impl Basis {
     }
 
     /// Number of functions.
-    pub const fn len(&self) -> usize {
+    const fn count(&self) -> usize {
         self.intervals.saturating_add(DEGREE)
     }
 
-    /// Whether there is none.
-    pub const fn is_empty(&self) -> bool {
-        false
-    }
-
     /// The middles between the knots, in s.
-    pub fn middles(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn middles(&self) -> impl Iterator<Item = f64> {
         let Self { start, spacing, .. } = *self;
         (0..self.intervals).map(move |i| start + (i as f64 + 0.5) * spacing)
     }
 
     /// The first function that is not zero at a time, and the derivative of an order of it and of
     /// those that follow.
-    pub fn at(&self, t: f64, order: usize) -> (usize, [f64; LIVE]) {
+    pub(crate) fn at(&self, t: f64, order: usize) -> (usize, [f64; LIVE]) {
         let place = (t - self.start) / self.spacing;
         #[expect(
             clippy::cast_possible_truncation,
@@ -96,27 +94,27 @@ impl Basis {
 
 /// Splines through samples of several quantities.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RegressionSpline {
+pub(crate) struct RegressionSpline {
     basis: Basis,
     /// R of the samples of the functions, B = Q R: row i holds columns i, i + 1, …
     triangle: Vec<[f64; LIVE]>,
     /// Coefficients: a row for each function, a column for each quantity.
     coefficients: DMatrix<f64>,
     /// Squares and products of the residuals.
-    pub residual: DMatrix<f64>,
+    pub(crate) residual: DMatrix<f64>,
     /// Degrees of freedom: samples minus coefficients.
-    pub freedom: usize,
+    pub(crate) freedom: usize,
 }
 
 impl RegressionSpline {
     /// Fits increasing times and their values, a row for each time. `None` if the samples do not
     /// determine the splines.
-    pub fn fit(basis: Basis, times: &[f64], values: &DMatrix<f64>) -> Option<Self> {
+    pub(crate) fn fit(basis: Basis, times: &[f64], values: &DMatrix<f64>) -> Option<Self> {
         // Before memory is taken: knots may be many more than samples where runs have different clocks.
-        if basis.len() > times.len() {
+        if basis.count() > times.len() {
             return None;
         }
-        let (n, quantities) = (basis.len(), values.ncols());
+        let (n, quantities) = (basis.count(), values.ncols());
         let mut triangle = vec![[0.0; LIVE]; n];
         let mut right = DMatrix::zeros(n, quantities);
         let mut residual = DMatrix::zeros(quantities, quantities);
@@ -168,12 +166,12 @@ impl RegressionSpline {
     }
 
     /// The functions.
-    pub const fn basis(&self) -> Basis {
+    pub(crate) const fn basis(&self) -> Basis {
         self.basis
     }
 
     /// The derivative of an order of each quantity at a time.
-    pub fn derivative(&self, t: f64, order: usize) -> Vec<f64> {
+    pub(crate) fn derivative(&self, t: f64, order: usize) -> Vec<f64> {
         let (first, functions) = self.basis.at(t, order);
         let of = |quantity: usize| {
             let functions = functions.iter().enumerate();
@@ -186,8 +184,8 @@ impl RegressionSpline {
 
     /// Noise of the derivative of an order at a time: a vector w, such that two derivatives have
     /// the covariance wᵀ w₂ times that of the samples.
-    pub fn spread(&self, t: f64, order: usize) -> Vec<f64> {
-        let n = self.basis.len();
+    pub(crate) fn spread(&self, t: f64, order: usize) -> Vec<f64> {
+        let n = self.basis.count();
         let (first, functions) = self.basis.at(t, order);
         let mut spread = vec![0.0; n];
         spread[first..first + LIVE].copy_from_slice(&functions);

@@ -35,26 +35,6 @@ pub enum SamplesError {
         /// Number needed.
         needed: usize,
     },
-    /// A setting that is not a positive number.
-    #[error("the {what} must be a positive number, not {value}")]
-    NotPositive {
-        /// Which setting.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// A degree or order of differentiation outside the range of the method.
-    #[error("the {what} must lie between {least} and {most}, not {value}")]
-    Outside {
-        /// Which setting.
-        what: &'static str,
-        /// Its value.
-        value: usize,
-        /// Smallest one.
-        least: usize,
-        /// Largest one.
-        most: usize,
-    },
     /// Overflow of the arithmetic.
     #[error("the estimate is not finite near {t} s")]
     NotFinite {
@@ -117,92 +97,11 @@ impl<'s> Samples<'s> {
     }
 }
 
-/// A positive and finite setting.
-pub(super) fn positive(what: &'static str, value: f64) -> Result<f64, SamplesError> {
-    if value > 0.0 && value.is_finite() {
-        Ok(value)
-    } else {
-        Err(SamplesError::NotPositive { what, value })
-    }
-}
-
-/// A setting between two bounds.
-pub(super) fn within(
-    what: &'static str,
-    value: usize,
-    [least, most]: [usize; 2],
-) -> Result<usize, SamplesError> {
-    if (least..=most).contains(&value) {
-        Ok(value)
-    } else {
-        Err(SamplesError::Outside {
-            what,
-            value,
-            least,
-            most,
-        })
-    }
-}
-
-/// A quantity and its time derivatives at the times of samples, with the covariance of each.
+/// A quantity and its time derivatives at a time, by order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
-    /// Quantities at a time: the value and its derivatives.
-    width: usize,
-    /// `width` numbers for each time.
-    means: Vec<f64>,
-    /// `width` × `width` numbers for each time.
-    covariances: Vec<f64>,
-}
-
-impl Estimate {
-    /// A value and `order` derivatives at a number of times, all zero.
-    pub(super) fn zeros(times: usize, order: usize) -> Self {
-        let width = order + 1;
-        Self {
-            width,
-            means: vec![0.0; times * width],
-            covariances: vec![0.0; times * width * width],
-        }
-    }
-
-    /// Number of times.
-    pub fn len(&self) -> usize {
-        self.means.len() / self.width
-    }
-
-    /// Whether there is no time.
-    pub fn is_empty(&self) -> bool {
-        self.means.is_empty()
-    }
-
-    /// Value and derivatives at the time of a row, from order 0.
-    pub fn at(&self, row: usize) -> &[f64] {
-        &self.means[row * self.width..][..self.width]
-    }
-
-    /// Their covariance, row by row.
-    pub fn covariance(&self, row: usize) -> &[f64] {
-        let entries = self.width * self.width;
-        &self.covariances[row * entries..][..entries]
-    }
-
-    /// Standard deviation of the derivative of an order.
-    pub fn std(&self, row: usize, order: usize) -> f64 {
-        self.covariance(row)[order * (self.width + 1)].sqrt()
-    }
-
-    /// The derivative of an order at all times.
-    pub fn derivative(&self, order: usize) -> Vec<f64> {
-        (0..self.len()).map(|row| self.at(row)[order]).collect()
-    }
-
-    /// Both at the time of a row, mutable.
-    pub(super) fn entry(&mut self, row: usize) -> (&mut [f64], &mut [f64]) {
-        let entries = self.width * self.width;
-        (
-            &mut self.means[row * self.width..][..self.width],
-            &mut self.covariances[row * entries..][..entries],
-        )
-    }
+    /// The value and its derivatives.
+    pub means: Vec<f64>,
+    /// Their standard deviations.
+    pub stds: Vec<f64>,
 }

@@ -5,7 +5,7 @@
 //! E. Forsythe, 1957): steps may differ, values may be missing, and at the edges the last whole
 //! window is evaluated off its middle. On equal steps the weights are the published ones.
 
-use super::samples::{Estimate, Samples, SamplesError, positive, within};
+use super::samples::{Estimate, Samples, SamplesError};
 
 /// Highest degree; beyond it a wider window of lower degree is better.
 pub const MOST_DEGREE: usize = 8;
@@ -18,11 +18,9 @@ pub struct SavitzkyGolay {
 }
 
 impl SavitzkyGolay {
-    /// Polynomials of a degree over a window of samples, whose number must exceed the degree.
-    pub fn new(degree: usize, count: usize) -> Result<Self, SamplesError> {
-        let degree = within("degree", degree, [0, MOST_DEGREE])?;
-        let count = within("window", count, [degree + 1, usize::MAX])?;
-        Ok(Self { degree, count })
+    /// Polynomials of a degree over a window of samples, whose number exceeds the degree.
+    pub const fn new(degree: usize, count: usize) -> Self {
+        Self { degree, count }
     }
 
     /// Samples of a window.
@@ -30,32 +28,31 @@ impl SavitzkyGolay {
         self.count
     }
 
-    /// Value and derivatives at the times of the samples, also where the value is missing.
+    /// Value and derivatives up to an order, which is at most the degree, at the times of the samples, also where the value
+    /// is missing.
     ///
-    /// The covariance is that of white noise of the standard deviation `std`; it does not include
-    /// the bias of the polynomial, which [`super::window`] keeps below it.
+    /// Standard deviations are those for white noise of the standard deviation `std`; they do not include
+    /// the bias of the polynomial, which [`super::window`] keeps below them.
     pub fn estimate(
         &self,
         samples: Samples<'_>,
         order: usize,
         std: f64,
-    ) -> Result<Estimate, SamplesError> {
-        let order = within("order of the derivative", order, [0, self.degree])?;
-        let std = positive("noise level", std)?;
+    ) -> Result<Vec<Estimate>, SamplesError> {
         samples.at_least(self.count)?;
         let (times, values): (Vec<f64>, Vec<f64>) = samples.present().unzip();
         let mut fit = Fit::default();
-        let mut result = Estimate::zeros(samples.times().len(), order);
-        for (row, &t) in samples.times().iter().enumerate() {
+        let estimates = samples.times().iter().map(|&t| {
             let window = self.around(t, &times);
             fit.find(&times[window.clone()], t, self.degree, order);
-            let (mean, covariance) = result.entry(row);
-            fit.evaluate(&values[window], std, mean, covariance);
-            if mean.iter().chain(&*covariance).any(|x| !x.is_finite()) {
-                return Err(SamplesError::NotFinite { t });
-            }
-        }
-        Ok(result)
+            let estimate = fit.evaluate(&values[window], std);
+            let mut all = estimate.means.iter().chain(&estimate.stds);
+            let is_finite = all.all(|number| number.is_finite());
+            is_finite
+                .then_some(estimate)
+                .ok_or(SamplesError::NotFinite { t })
+        });
+        estimates.collect()
     }
 
     /// The window about a time: as many samples before as after, where available.
@@ -131,19 +128,20 @@ impl Fit {
         }
     }
 
-    fn evaluate(&self, values: &[f64], std: f64, mean: &mut [f64], covariance: &mut [f64]) {
-        let width = mean.len();
+    fn evaluate(&self, values: &[f64], std: f64) -> Estimate {
+        let width = self.derivatives[0].len();
         let unit = |r: usize| self.scale.powi(-i32::try_from(r).unwrap_or(0));
-        mean.fill(0.0);
-        covariance.fill(0.0);
+        let (mut means, mut variances) = (vec![0.0; width], vec![0.0; width]);
         for (p, d) in self.basis.iter().zip(&self.derivatives) {
             let coefficient: f64 = p.iter().zip(values).map(|(p, y)| p * y).sum();
             for r in 0..width {
-                mean[r] += coefficient * d[r] * unit(r);
-                for s in 0..width {
-                    covariance[r * width + s] += std * std * d[r] * d[s] * unit(r + s);
-                }
+                means[r] += coefficient * d[r] * unit(r);
+                variances[r] += std * std * d[r] * d[r] * unit(r + r);
             }
+        }
+        Estimate {
+            means,
+            stds: variances.into_iter().map(f64::sqrt).collect(),
         }
     }
 

@@ -6,7 +6,7 @@
 //! estimates (J. Hausman, 1978); the excess of the squared difference is due to bias. The window with
 //! the smallest sum of bias and variance is taken.
 
-use super::samples::{Estimate, Samples, SamplesError};
+use super::samples::{Samples, SamplesError};
 use super::savitzky_golay::SavitzkyGolay;
 
 /// Ratio of one window to the next narrower one, in tenths.
@@ -26,8 +26,8 @@ pub fn chosen(
     let mut tried: Vec<Tried> = Vec::new();
     let mut count = narrowest;
     while count <= present / 2 {
-        let filter = SavitzkyGolay::new(degree, count)?;
-        tried.push(Tried::new(filter, count, samples, order, std)?);
+        let filter = SavitzkyGolay::new(degree, count);
+        tried.push(Tried::new(filter, samples, order, std)?);
         count = (count * GROWTH / 10).max(count + 2) | 1;
     }
     let rows = inside(samples.times().len());
@@ -39,10 +39,8 @@ pub fn chosen(
         bias + tried[wide].variance(rows.clone())
     };
     let best = (0..tried.len()).min_by(|&a, &b| risk(a).total_cmp(&risk(b)));
-    best.map_or_else(
-        || SavitzkyGolay::new(degree, narrowest),
-        |best| Ok(tried[best].filter),
-    )
+    let narrowest = SavitzkyGolay::new(degree, narrowest);
+    Ok(best.map_or(narrowest, |best| tried[best].filter))
 }
 
 /// The middle half of a record, where every window is complete.
@@ -52,7 +50,6 @@ fn inside(rows: usize) -> std::ops::Range<usize> {
 
 struct Tried {
     filter: SavitzkyGolay,
-    count: usize,
     derivative: Vec<f64>,
     /// Its variance, at each time.
     variance: Vec<f64>,
@@ -61,19 +58,17 @@ struct Tried {
 impl Tried {
     fn new(
         filter: SavitzkyGolay,
-        count: usize,
         samples: Samples<'_>,
         order: usize,
         std: f64,
     ) -> Result<Self, SamplesError> {
-        let estimate: Estimate = filter.estimate(samples, order, std)?;
+        let estimates = filter.estimate(samples, order, std)?;
+        let derivative = estimates.iter().map(|own| own.means[order]);
+        let variance = estimates.iter().map(|own| own.stds[order].powi(2));
         Ok(Self {
             filter,
-            count,
-            derivative: estimate.derivative(order),
-            variance: (0..estimate.len())
-                .map(|row| estimate.std(row, order).powi(2))
-                .collect(),
+            derivative: derivative.collect(),
+            variance: variance.collect(),
         })
     }
 
@@ -88,7 +83,7 @@ impl Tried {
             .map(|row| (self.derivative[row] - narrow.derivative[row]).powi(2));
         let noise = narrow.variance(rows.clone()) - self.variance(rows.clone());
         // Estimates of overlapping windows are correlated: one counts for each window.
-        let chance = CHANCE * (2.0 * narrow.count as f64 / present as f64).sqrt();
+        let chance = CHANCE * (2.0 * narrow.filter.count() as f64 / present as f64).sqrt();
         mean(difference) - noise * (1.0 + chance)
     }
 }

@@ -193,6 +193,22 @@ fn is_within([low, high]: [f64; 2], range: Option<[f64; 2]>, is_angle: bool) -> 
     }
 }
 
+/// One of a unit in SI.
+fn scale(text: &str) -> f64 {
+    units::parse(text).map_or(1.0, |unit| unit.scale)
+}
+
+/// The unit in which a slope is nearest to one, with the factor between them; the first one of several.
+fn nearest<'t>(texts: &[&'t str], slope: impl Fn(&str) -> f64) -> (&'t str, f64) {
+    let off = |text: &&'t str| {
+        let slope = slope(text);
+        (*text, slope.max(1.0 / slope))
+    };
+    let all = texts.iter().map(off);
+    let nearest = all.min_by(|(_, a), (_, b)| a.total_cmp(b));
+    nearest.unwrap_or(("rad/s", 1.0))
+}
+
 /// A rate by the derivative of its position.
 fn rate(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&Judged>) {
     if let Some(unit) = stated(log, own.column, quantity) {
@@ -206,13 +222,11 @@ fn rate(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&Judg
     if units::parse(texts[0]).is_ok_and(|unit| unit.dimension != quantity.dimension) {
         return;
     }
-    if position.is_some_and(|position| position.unit.is_none()) {
+    if let Some(position) = position.filter(|position| position.unit.is_none()) {
         own.unit = stated(log, own.column, quantity);
-        own.questions
-            .extend(position.into_iter().flat_map(|own| own.questions.clone()));
+        own.questions.extend(position.questions.iter().cloned());
         return;
     }
-    let scale = |text: &str| units::parse(text).map_or(1.0, |unit| unit.scale);
     let known = position.and_then(|position| {
         let unit = position.unit.as_ref()?;
         let relation = rate_of(log, position.column, own.column)?;
@@ -233,18 +247,11 @@ fn rate(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&Judg
         own.questions.extend(doubtful);
         return;
     };
-    let off = |text: &str| {
-        let slope = relation.slope.abs() * scale(text) / of_position;
-        slope.max(1.0 / slope)
-    };
-    let best = texts
-        .iter()
-        .min_by(|a, b| off(a).total_cmp(&off(b)))
-        .copied()
-        .unwrap_or("rad/s");
+    let slope = |text: &str| relation.slope.abs() * scale(text) / of_position;
+    let (best, off) = nearest(texts, slope);
     if stated(log, own.column, quantity).is_none() {
         own.unit = Some(best.to_owned());
-        if off(best) > NEAR {
+        if off > NEAR {
             own.questions.push(format!(
                 "it is {:.3} times the derivative of the position, which is no unit that is known; which one is it?",
                 relation.slope.abs()
@@ -261,10 +268,9 @@ fn rate(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&Judg
 /// A command of a position by the position that follows it.
 fn command(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&Judged>) {
     let named = stated(log, own.column, quantity);
-    if position.is_some_and(|position| position.unit.is_none()) {
+    if let Some(position) = position.filter(|position| position.unit.is_none()) {
         own.unit = named;
-        own.questions
-            .extend(position.into_iter().flat_map(|own| own.questions.clone()));
+        own.questions.extend(position.questions.iter().cloned());
         return;
     }
     let known = position.and_then(|position| {
@@ -283,19 +289,14 @@ fn command(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&J
         own.questions.push(far.to_owned());
         return;
     }
-    let scale = |text: &str| units::parse(text).map_or(1.0, |unit| unit.scale);
     let texts: &[&str] = if quantity.has_angle {
         &["rad", "deg"]
     } else {
         &["m", "mm"]
     };
     // The position in SI per command in SI, in each unit of the command.
-    let off = |text: &str| {
-        let slope = relation.slope.abs() * scale(&unit) / scale(text);
-        slope.max(1.0 / slope)
-    };
-    let best = texts.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
-    own.unit = named.or(best.map(|text| (*text).to_owned()));
+    let slope = |text: &str| relation.slope.abs() * scale(&unit) / scale(text);
+    own.unit = named.or_else(|| Some(nearest(texts, slope).0.to_owned()));
     if relation.correlation < 0.0 {
         own.reversed = true;
         let against = "the position runs against it; which of both is reversed?";

@@ -1,7 +1,9 @@
 //! The recordings that a draft is made from: their columns, and which of them are the times.
 
+use crate::clock::{median, steps};
 use crate::episode::{is_episode, number};
 use crate::limits::{MAX_RUNS, MIN_ROWS};
+use crate::run::hold;
 use crate::time::{self, TIME, may_be_time, unit_of};
 use crate::{DataError, Logged, format};
 
@@ -82,8 +84,9 @@ impl Log {
                     Some(episode) => format!("{name}#{episode}"),
                     None => name.clone(),
                 });
+                // Topics may have times of their own.
                 for column in &mut values {
-                    hold(column);
+                    hold(column, f64::NAN);
                 }
                 if tables.len() < MOST_RUNS {
                     tables.push(values);
@@ -186,17 +189,6 @@ fn episodes(names: &[String], values: Vec<Vec<f64>>) -> Vec<(Option<u64>, Vec<Ve
     all.into_iter().take(MAX_RUNS).map(of).collect()
 }
 
-/// Values that are missing are those before, as of topics with times of their own.
-fn hold(values: &mut [f64]) {
-    let mut last = f64::NAN;
-    for value in values {
-        if value.is_nan() {
-            *value = last;
-        }
-        last = *value;
-    }
-}
-
 fn size(unit: &str) -> f64 {
     let mut units = UNITS.iter();
     units
@@ -256,12 +248,11 @@ fn clock(names: &[String], values: &[Vec<f64>]) -> Clock {
 
 /// Whether values increase in steps like those of a clock.
 fn is_clock(values: &[f64]) -> bool {
-    let mut steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let steps = steps(values);
     if steps.len() + 1 < MIN_ROWS || steps.iter().any(|step| !step.is_finite()) {
         return false;
     }
-    let middle = steps.len() / 2;
-    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let median = median(steps.clone());
     let steady = steps
         .iter()
         .filter(|step| STEADY.contains(&(*step / median)));
@@ -276,9 +267,7 @@ fn probable_unit(times: &[f64]) -> &'static str {
     {
         return unit;
     }
-    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    match *steps.select_nth_unstable_by(middle, f64::total_cmp).1 {
+    match median(steps(times)) {
         step if step < 0.8 => "s",
         step if step < 800.0 => "ms",
         step if step < 8e5 => "us",

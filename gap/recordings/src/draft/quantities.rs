@@ -1,7 +1,7 @@
 //! What columns may be: joints with rates and torques, actuators; or the quantities of a spec.
 
 use appell_spec::Mechanism;
-use appell_spec::mechanism::{CoordinateId, InputId, Label, OutputId, SpeedId};
+use appell_spec::mechanism::{CoordinateId, Label, SpeedId};
 use appell_spec::units::Dimension;
 
 use super::words::{Kind, words};
@@ -79,18 +79,18 @@ fn of_robot(mechanism: &Mechanism, robot: &Robot) -> Vec<Quantity> {
         quantity.range = own.range;
         all.push(quantity);
         let mut speeds = mechanism.pseudo_velocities.iter();
-        if let Some(own) = speeds.find(|w| w.label.name == joint.velocity) {
-            let name = format!("{}.velocity", joint.name);
-            let mut quantity = Quantity::new(Kind::Rate, &name, &own.label, Some(axis));
-            quantity.words = vec![words(&joint.name)];
-            all.push(quantity);
-        }
+        let rate = speeds.find(|w| w.label.name == joint.velocity);
         let mut outputs = mechanism.outputs.iter();
-        if let Some(own) = outputs.find(|own| joint.torque.as_ref() == Some(&own.label.name)) {
-            let name = format!("{}.torque", joint.name);
-            let mut quantity = Quantity::new(Kind::Torque, &name, &own.label, Some(axis));
-            quantity.words = vec![words(&joint.name)];
-            all.push(quantity);
+        let torque = outputs.find(|own| joint.torque.as_ref() == Some(&own.label.name));
+        let others = [
+            (Kind::Rate, "velocity", rate.map(|own| &own.label)),
+            (Kind::Torque, "torque", torque.map(|own| &own.label)),
+        ];
+        for (kind, what, label) in others {
+            all.extend(label.map(|label| Quantity {
+                words: vec![words(&joint.name)],
+                ..Quantity::new(kind, &format!("{}.{what}", joint.name), label, Some(axis))
+            }));
         }
     }
     for actuator in &names.actuators {
@@ -143,23 +143,11 @@ fn of_spec(mechanism: &Mechanism) -> Vec<Quantity> {
             .extend(coordinate.map(|own| words(&own.label.name)));
         all.push(quantity);
     }
-    for index in 0..mechanism.outputs.len() {
-        let own = &mechanism.outputs[OutputId::new(index)];
-        all.push(Quantity::new(
-            Kind::Torque,
-            &own.label.name,
-            &own.label,
-            None,
-        ));
-    }
-    for index in 0..mechanism.inputs.len() {
-        let own = &mechanism.inputs[InputId::new(index)];
-        all.push(Quantity::new(
-            Kind::Command,
-            &own.label.name,
-            &own.label,
-            None,
-        ));
-    }
+    let outputs = mechanism.outputs.iter();
+    let outputs = outputs.map(|own| (Kind::Torque, &own.label));
+    let inputs = mechanism.inputs.iter();
+    let inputs = inputs.map(|own| (Kind::Command, &own.label));
+    let others = outputs.chain(inputs);
+    all.extend(others.map(|(kind, label)| Quantity::new(kind, &label.name, label, None)));
     all
 }

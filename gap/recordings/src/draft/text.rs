@@ -9,6 +9,7 @@ use super::log::{Clock, Log, line};
 use super::quantities::Quantity;
 use super::words::Kind;
 use crate::robot::Robot;
+use crate::time;
 
 /// Tolerances that are usual for numbers of a robot file, by attribute.
 const TOLERANCES: [(&str, &str); 11] = [
@@ -213,11 +214,11 @@ fn comment(text: &str) -> String {
 
 /// A key of a table.
 fn key(name: &str) -> String {
-    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if !name.is_empty() && name.chars().all(is_bare) {
-        return name.to_owned();
+    if time::is_bare(name) {
+        name.to_owned()
+    } else {
+        quoted(name)
     }
-    quoted(name)
 }
 
 /// A string of TOML.

@@ -1,5 +1,7 @@
 //! Names of columns: their words, and what these say of kind and unit.
 
+use crate::time::has;
+
 /// What a column is, by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -10,100 +12,21 @@ pub(super) enum Kind {
 }
 
 /// Words of commands, of whatever quantity.
-const COMMANDS: [&str; 17] = [
-    "cmd",
-    "cmds",
-    "command",
-    "commands",
-    "commanded",
-    "u",
-    "ctrl",
-    "control",
-    "des",
-    "desired",
-    "target",
-    "goal",
-    "ref",
-    "reference",
-    "setpoint",
-    "action",
-    "actions",
-];
+const COMMANDS: &str = "cmd cmds command commands commanded u ctrl control des desired target goal ref reference setpoint \
+    action actions";
 /// Words of commands that stand in names of measured quantities as well, as in `motor_position`.
-const DRIVES: [&str; 9] = [
-    "act", "actuator", "servo", "motor", "drive", "input", "current", "currents", "amps",
-];
-const RATES: [&str; 16] = [
-    "dq",
-    "qd",
-    "qdot",
-    "dot",
-    "vel",
-    "velocity",
-    "velocities",
-    "rate",
-    "rates",
-    "speed",
-    "speeds",
-    "omega",
-    "qvel",
-    "dtheta",
-    "rpm",
-    "gyro",
-];
-const TORQUES: [&str; 12] = [
-    "tau", "torque", "torques", "trq", "eff", "effort", "efforts", "moment", "force", "forces",
-    "load", "qfrc",
-];
-const POSITIONS: [&str; 16] = [
-    "q",
-    "pos",
-    "position",
-    "positions",
-    "angle",
-    "angles",
-    "ang",
-    "theta",
-    "enc",
-    "encoder",
-    "encoders",
-    "qpos",
-    "state",
-    "present",
-    "actual",
-    "counts",
-];
+const DRIVES: &str = "act actuator servo motor drive input current currents amps";
+const RATES: &str =
+    "dq qd qdot dot vel velocity velocities rate rates speed speeds omega qvel dtheta rpm gyro";
+const TORQUES: &str = "tau torque torques trq eff effort efforts moment force forces load qfrc";
+const POSITIONS: &str = "q pos position positions angle angles ang theta enc encoder encoders qpos state present actual \
+    counts";
 /// Words that say nothing.
-const PLAIN: [&str; 18] = [
-    "joint",
-    "joints",
-    "states",
-    "observation",
-    "obs",
-    "robot",
-    "arm",
-    "data",
-    "meas",
-    "measured",
-    "msg",
-    "the",
-    "of",
-    "value",
-    "values",
-    "j",
-    "m",
-    "points",
-];
+const PLAIN: &str = "joint joints states observation obs robot arm data meas measured msg the of value values j m points";
 /// Units that names end with, in the notation of descriptions.
-const UNITS: [(&str, &str); 10] = [
-    ("deg", "deg"),
-    ("degs", "deg"),
-    ("degree", "deg"),
-    ("degrees", "deg"),
-    ("rad", "rad"),
-    ("rads", "rad"),
-    ("radian", "rad"),
-    ("radians", "rad"),
+const UNITS: [(&str, &str); 4] = [
+    ("deg degs degree degrees", "deg"),
+    ("rad rads radian radians", "rad"),
     ("rpm", "rpm"),
     ("mm", "mm"),
 ];
@@ -140,39 +63,42 @@ pub(super) fn without<'w>(words: &'w [String], name: &[String]) -> Option<Vec<&'
 
 /// The kind that words say; `None` if they say none.
 pub(super) fn kind(words: &[&str]) -> Option<Kind> {
-    let has = |list: &[&str]| words.iter().any(|word| list.contains(word));
-    if has(&COMMANDS) {
-        return Some(Kind::Command);
-    }
-    if has(&RATES) {
-        return Some(Kind::Rate);
-    }
-    if has(&TORQUES) {
-        return Some(Kind::Torque);
-    }
-    if has(&POSITIONS) {
-        return Some(Kind::Position);
-    }
-    has(&DRIVES).then_some(Kind::Command)
+    let kinds = [
+        (COMMANDS, Kind::Command),
+        (RATES, Kind::Rate),
+        (TORQUES, Kind::Torque),
+        (POSITIONS, Kind::Position),
+        (DRIVES, Kind::Command),
+    ];
+    let is_said = |list: &str| words.iter().any(|word| has(list, word));
+    let said = kinds.into_iter().find(|(list, _)| is_said(list));
+    said.map(|(_, kind)| kind)
+}
+
+/// The unit that a word states.
+fn unit_of(word: &str) -> Option<&'static str> {
+    let mut units = UNITS.iter();
+    let found = units.find(|(words, _)| has(words, word));
+    found.map(|(_, unit)| *unit)
 }
 
 /// The unit that a name states.
 pub(super) fn unit(words: &[String]) -> Option<&'static str> {
-    let known = |word: &String| UNITS.iter().find(|(own, _)| own == word);
-    words.iter().rev().find_map(known).map(|(_, unit)| *unit)
+    words.iter().rev().find_map(|word| unit_of(word))
 }
 
 /// Whether words say that a command is a current.
 pub(super) fn is_current(words: &[String]) -> bool {
-    let known = ["current", "currents", "amps", "amp"];
-    words.iter().any(|word| known.contains(&word.as_str()))
+    words
+        .iter()
+        .any(|word| has("current currents amps amp", word))
 }
 
 /// How many words say nothing that is known.
 pub(super) fn unknown(words: &[&str]) -> usize {
-    let lists: [&[&str]; 6] = [&COMMANDS, &DRIVES, &RATES, &TORQUES, &POSITIONS, &PLAIN];
-    let is_unit = |word: &str| UNITS.iter().any(|(own, _)| *own == word) || word == "s";
-    let is_known = |word: &str| lists.iter().any(|list| list.contains(&word)) || is_unit(word);
+    let lists = [COMMANDS, DRIVES, RATES, TORQUES, POSITIONS, PLAIN];
+    let is_unit = |word: &str| unit_of(word).is_some() || word == "s";
+    let is_known = |word: &str| lists.iter().any(|list| has(list, word)) || is_unit(word);
     words.iter().filter(|word| !is_known(word)).count()
 }
 

@@ -2,22 +2,11 @@
 //! Representation*: numbers are aligned to multiples of their own length).
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
+
+use super::names::{LONGEST, NAMES, Names, Tell};
 
 /// Messages inside messages are at most so deep.
 const DEEPEST: usize = 16;
-
-/// Fields with the names of what the lists of a message are of: joints of `sensor_msgs/JointState`, of trajectories and
-/// commands of `control_msgs`.
-pub(super) const NAMES: [&str; 5] = [
-    "name",
-    "names",
-    "joint_names",
-    "dof_names",
-    "interface_names",
-];
-/// Longest name of a joint.
-pub(super) const LONGEST_NAME: usize = 256;
 
 /// The message types of a channel by name; the first one has an empty name.
 pub(super) struct Definitions {
@@ -75,12 +64,7 @@ impl Definitions {
 
     /// Passes every number of a message, with its path, to `tell`; `None` if the bytes do not fit the
     /// definitions.
-    pub(super) fn read(
-        &self,
-        bytes: &[u8],
-        topic: &str,
-        tell: &mut dyn FnMut(&str, f64),
-    ) -> Option<()> {
+    pub(super) fn read(&self, bytes: &[u8], topic: &str, tell: Tell<'_>) -> Option<()> {
         // The encapsulation header has four bytes; the second one gives the byte order.
         let (head, body) = bytes.split_at_checked(4)?;
         let mut reader = Reader {
@@ -89,10 +73,8 @@ impl Definitions {
             at: 0,
             little: head[1] & 1 == 1,
             elements: body.len(),
-            path: topic.to_owned(),
-            named: topic.to_owned(),
-            names: Vec::new(),
-            tell,
+            names: Names::of(topic, tell),
+            joints: Vec::new(),
         };
         reader.message("", 0)
     }
@@ -155,12 +137,9 @@ struct Reader<'a> {
     little: bool,
     /// Elements of lists that may still come: each has at least a byte.
     elements: usize,
-    path: String,
-    /// The same path with names for numbers in lists, where the message names its joints.
-    named: String,
-    /// Those names: of the message, or of one that contains it.
-    names: Vec<String>,
-    tell: &'a mut dyn FnMut(&str, f64),
+    names: Names<'a>,
+    /// The names of joints: of the message, or of one that contains it.
+    joints: Vec<String>,
 }
 
 impl<'a> Reader<'a> {
@@ -169,13 +148,10 @@ impl<'a> Reader<'a> {
             return None;
         }
         let definitions: &'a Definitions = self.definitions;
-        let lengths = [self.path.len(), self.named.len()];
-        let outer = self.names.clone();
+        let here = self.names.place();
+        let outer = self.joints.clone();
         for field in definitions.fields(name)? {
-            for path in [&mut self.path, &mut self.named] {
-                path.push('.');
-                path.push_str(&field.name);
-            }
+            self.names.field(&field.name);
             match field.count {
                 Count::One => self.value(&field.kind, depth)?,
                 Count::Fixed(_) | Count::Any => {
@@ -185,47 +161,34 @@ impl<'a> Reader<'a> {
                     };
                     self.elements = self.elements.checked_sub(count)?;
                     if matches!(field.kind, Kind::Text(1)) && NAMES.contains(&&*field.name) {
-                        self.names = (0..count).map(|_| self.text()).collect::<Option<_>>()?;
+                        self.joints = (0..count).map(|_| self.text()).collect::<Option<_>>()?;
                     } else {
                         self.list(&field.kind, count, depth)?;
                     }
                 }
             }
-            self.cut(lengths);
+            self.names.back(here);
         }
-        self.names = outer;
+        self.joints = outer;
         Some(())
     }
 
     /// The elements of a list, by their numbers and, where there are as many, by the names of joints.
     fn list(&mut self, kind: &Kind, count: usize, depth: usize) -> Option<()> {
-        let lengths = [self.path.len(), self.named.len()];
+        let here = self.names.place();
         for index in 0..count {
-            // Writing to a string cannot fail.
-            let _ = write!(self.path, "[{index}]");
-            let _ = match self.names.get(index).filter(|_| self.names.len() == count) {
-                Some(name) => write!(self.named, "[{name}]"),
-                None => write!(self.named, "[{index}]"),
-            };
+            self.names.element(index, count, &self.joints);
             self.value(kind, depth)?;
-            self.cut(lengths);
+            self.names.back(here);
         }
         Some(())
-    }
-
-    fn cut(&mut self, [path, named]: [usize; 2]) {
-        self.path.truncate(path);
-        self.named.truncate(named);
     }
 
     fn value(&mut self, kind: &Kind, depth: usize) -> Option<()> {
         match kind {
             Kind::Number(number) => {
                 let value = self.number(*number)?;
-                (self.tell)(&self.path, value);
-                if self.named != self.path {
-                    (self.tell)(&self.named, value);
-                }
+                self.names.tell(value);
             }
             Kind::Text(width) => {
                 let length = self.length()?.checked_mul(*width)?;
@@ -243,7 +206,7 @@ impl<'a> Reader<'a> {
         self.at += length;
         let text = String::from_utf8_lossy(bytes);
         let text = text.trim_end_matches('\0');
-        Some(text.chars().take(LONGEST_NAME).collect())
+        Some(text.chars().take(LONGEST).collect())
     }
 
     fn length(&mut self) -> Option<usize> {

@@ -75,18 +75,6 @@ pub const TABLES: &[Anthropometry] = &[
     },
 ];
 
-impl Anthropometry {
-    /// The table of a name.
-    pub fn named(name: &str) -> Option<&'static Self> {
-        TABLES.iter().find(|table| table.name == name)
-    }
-
-    /// The segment of a name.
-    pub fn part(&self, name: &str) -> Option<&'static Part> {
-        self.parts.iter().find(|part| part.name == name)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

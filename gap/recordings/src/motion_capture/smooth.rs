@@ -47,7 +47,7 @@ impl Signal {
 
 /// The window for rides of one kind, in samples of a Savitzky-Golay filter.
 pub fn filter(rides: &[Ride]) -> Result<SavitzkyGolay, SamplesError> {
-    let mut narrowest: Option<(usize, SavitzkyGolay)> = None;
+    let mut narrowest: Option<SavitzkyGolay> = None;
     for ride in rides.iter().take(RIDES) {
         let first = ride.times.len().saturating_sub(FRAMES) / 2;
         let frames = first..(first + FRAMES).min(ride.times.len());
@@ -57,15 +57,12 @@ pub fn filter(rides: &[Ride]) -> Result<SavitzkyGolay, SamplesError> {
             // Without noise the narrowest window is right.
             let level = level.max(f64::MIN_POSITIVE.sqrt());
             let chosen = window::chosen(samples, DEGREE, 2, level)?;
-            if narrowest.is_none_or(|(count, _)| chosen.count() < count) {
-                narrowest = Some((chosen.count(), chosen));
+            if narrowest.is_none_or(|filter| chosen.count() < filter.count()) {
+                narrowest = Some(chosen);
             }
         }
     }
-    narrowest.map_or_else(
-        || SavitzkyGolay::new(DEGREE, DEGREE + 3),
-        |(_, filter)| Ok(filter),
-    )
+    Ok(narrowest.unwrap_or_else(|| SavitzkyGolay::new(DEGREE, DEGREE + 3)))
 }
 
 impl Smoothed {
@@ -141,12 +138,10 @@ impl<'t> Kernels<'t> {
     fn smooth(&self, values: &[f64]) -> Result<Signal, SamplesError> {
         let samples = Samples::new(self.times, values)?;
         if values.len() < self.filter.count() || values.iter().any(|value| value.is_nan()) {
-            // Windows extend over missing values. Covariances are not needed, so the level is
-            // arbitrary.
-            let estimate = self.filter.estimate(samples, 2, 1.0)?;
-            let rows = 0..estimate.len();
-            let three = |row| [0, 1, 2].map(|order| estimate.at(row)[order]);
-            return Ok(Signal(rows.map(three).collect()));
+            // Windows extend over missing values. Deviations are not needed, so the level is arbitrary.
+            let rows = self.filter.estimate(samples, 2, 1.0)?.into_iter();
+            let three = rows.map(|own| [0, 1, 2].map(|order| own.means[order]));
+            return Ok(Signal(three.collect()));
         }
         let rows = self.windows.iter().map(|&(first, kernel)| {
             self.weights[kernel].each_ref().map(|weights| {

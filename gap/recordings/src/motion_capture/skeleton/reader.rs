@@ -28,9 +28,7 @@ impl<'r, 't> Reader<'r, 't> {
             centre: String::new(),
         }
     }
-}
 
-impl Reader<'_, '_> {
     pub(super) fn skeleton(&mut self, table: &DeTable<'_>) -> Option<Skeleton> {
         self.fields.only(table, KEYS);
         let description = self.fields.string(table, "description");
@@ -53,20 +51,6 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// A section that has to be there.
-    fn section<'a, 'd>(
-        &mut self,
-        table: &'a DeTable<'d>,
-        name: &str,
-        help: &str,
-    ) -> Option<&'a DeTable<'d>> {
-        if table.get(name).is_none() {
-            let message = format!("the section `[{name}]` is missing");
-            self.fields.tell(Code::MissingSection, message, 0..0, help);
-        }
-        self.fields.section(table, name)
-    }
-
     fn required_text(
         &mut self,
         table: &DeTable<'_>,
@@ -74,15 +58,14 @@ impl Reader<'_, '_> {
         help: &str,
     ) -> Option<(String, Span)> {
         if table.get(key).is_none() {
-            let message = format!("the key `{key}` is missing");
-            self.fields.tell(Code::MissingKey, message, 0..0, help);
+            self.fields.missing(key, 0..0, help);
         }
         self.fields.string(table, key)
     }
 
     fn columns(&mut self, table: &DeTable<'_>) -> Option<Columns> {
         let help = "write position and angles, three columns each, and their units";
-        let table = self.section(table, "columns", help)?;
+        let table = self.fields.needed_section(table, "columns", help)?;
         let keys = ["position", "angles", "length", "angle"];
         self.fields.only(table, &keys);
         let length = self.scale(table, "length", "m")?;
@@ -143,7 +126,7 @@ impl Reader<'_, '_> {
 
     fn bodies(&mut self, table: &DeTable<'_>) {
         let help = "name each rigid body, such as E = \"top of the vehicle\"";
-        let Some(table) = self.section(table, "bodies", help) else {
+        let Some(table) = self.fields.needed_section(table, "bodies", help) else {
             return;
         };
         for (name, _) in in_order(table) {
@@ -182,7 +165,7 @@ impl Reader<'_, '_> {
 
     fn point(&mut self, name: &str, value: &Value<'_>) -> Option<Point> {
         let wanted = "a table such as { body = \"E\", offset = [0, 0, -0.45], unit = \"m\" }";
-        let table = self.table(value, wanted)?;
+        let table = self.fields.table(value, wanted)?;
         self.fields.only(table, &["body", "offset", "unit"]);
         let body = self.fields.string(table, "body");
         let (body, at) = self.present(body, "body", value)?;
@@ -206,7 +189,7 @@ impl Reader<'_, '_> {
 
     fn rider(&mut self, table: &DeTable<'_>) -> Option<Rider> {
         let help = "write mass, table and the name of the centre of mass";
-        let rider = self.section(table, "rider", help)?;
+        let rider = self.fields.needed_section(table, "rider", help)?;
         self.fields.only(rider, &["mass", "table", "name"]);
         let (centre, at) = self.required_text(rider, "name", "write name = \"G\"")?;
         if self.points.iter().any(|point| point.name == centre) {
@@ -217,11 +200,8 @@ impl Reader<'_, '_> {
         self.centre.clone_from(&centre);
         let mass = self.mass(rider);
         let (name, at) = self.required_text(rider, "table", "write table = \"de_leva_men\"")?;
-        let names = || TABLES.iter().map(|table| table.name);
-        let Some(anthropometry) = Anthropometry::named(&name) else {
-            self.unknown("table", &name, at, names());
-            return None;
-        };
+        let names = TABLES.iter().map(|table| table.name);
+        let anthropometry = &TABLES[self.named("table", &name, at, names)?];
         let segments = self.segments(table, anthropometry, mass.unwrap_or(1.0))?;
         Some(Rider {
             mass: mass?,
@@ -234,11 +214,12 @@ impl Reader<'_, '_> {
     fn mass(&mut self, rider: &DeTable<'_>) -> Option<f64> {
         let help = "write mass = { value = 65, unit = \"kg\" }";
         let Some(value) = rider.get("mass") else {
-            let message = "the key `mass` is missing";
-            self.fields.tell(Code::MissingKey, message, 0..0, help);
+            self.fields.missing("mass", 0..0, help);
             return None;
         };
-        let table = self.table(value, "a table such as { value = 65, unit = \"kg\" }")?;
+        let table = self
+            .fields
+            .table(value, "a table such as { value = 65, unit = \"kg\" }")?;
         self.fields.only(table, &["value", "unit"]);
         let scale = self.scale(table, "unit", "kg")?;
         let number = table.get("value");
@@ -262,7 +243,7 @@ impl Reader<'_, '_> {
     ) -> Option<Vec<Segment>> {
         let help =
             "write a line for each segment, such as { part = \"head\", from = \"H\", to = \"N\" }";
-        let table = self.section(table, "segments", help)?;
+        let table = self.fields.needed_section(table, "segments", help)?;
         let mut segments = Vec::new();
         for (name, value) in in_order(table) {
             segments.extend(self.segment(&name, value, anthropometry));
@@ -287,15 +268,12 @@ impl Reader<'_, '_> {
         anthropometry: &'static Anthropometry,
     ) -> Option<Segment> {
         let wanted = "a table such as { part = \"forearm\", from = \"UAR\", to = \"LAR\" }";
-        let table = self.table(value, wanted)?;
+        let table = self.fields.table(value, wanted)?;
         self.fields.only(table, &["part", "from", "to"]);
         let part = self.fields.string(table, "part");
         let (part, at) = self.present(part, "part", value)?;
-        let Some(row) = anthropometry.part(&part) else {
-            let parts = anthropometry.parts.iter().map(|part| part.name);
-            self.unknown("part", &part, at, parts);
-            return None;
-        };
+        let parts = anthropometry.parts.iter().map(|part| part.name);
+        let row = &anthropometry.parts[self.named("part", &part, at, parts)?];
         let from = self.end(table, "from", value);
         let to = self.end(table, "to", value);
         Some(Segment {
@@ -328,7 +306,7 @@ impl Reader<'_, '_> {
 
     fn frame(&mut self, table: &DeTable<'_>) -> Option<Frame> {
         let help = "write body and origin of the frame that moves with the vehicle";
-        let table = self.section(table, "frame", help)?;
+        let table = self.fields.needed_section(table, "frame", help)?;
         self.fields.only(table, &["body", "origin"]);
         let body = self.required_text(table, "body", "write body = \"E\"");
         let origin = self.required_text(table, "origin", "write origin = \"C\"");
@@ -342,7 +320,7 @@ impl Reader<'_, '_> {
 
     fn channels(&mut self, table: &DeTable<'_>) -> Option<Vec<Channel>> {
         let help = "write a line for each coordinate of the model, such as x = { path = \"C\" }";
-        let table = self.section(table, "channels", help)?;
+        let table = self.fields.needed_section(table, "channels", help)?;
         let mut channels = Vec::new();
         for (name, value) in in_order(table) {
             let kind = self.channel(value);
@@ -353,7 +331,7 @@ impl Reader<'_, '_> {
 
     fn channel(&mut self, value: &Value<'_>) -> Option<ChannelKind> {
         let wanted = "one of { path = \"C\" }, { pitch_of = \"E\" }, { lean = [\"C\", \"G\"] }";
-        let table = self.table(value, wanted)?;
+        let table = self.fields.table(value, wanted)?;
         self.fields.only(table, &["path", "pitch_of", "lean"]);
         if table.len() != 1 {
             self.fields.wrong_type(value, wanted);
@@ -379,14 +357,6 @@ impl Reader<'_, '_> {
         self.body(&name, at).map(ChannelKind::Pitch)
     }
 
-    fn table<'a, 'd>(&mut self, value: &'a Value<'d>, wanted: &str) -> Option<&'a DeTable<'d>> {
-        let table = value.get_ref().as_table();
-        if table.is_none() {
-            self.fields.wrong_type(value, wanted);
-        }
-        table
-    }
-
     /// A value that has to be there.
     fn present<T>(&mut self, value: Option<T>, key: &str, whole: &Value<'_>) -> Option<T> {
         // A value of the wrong type has been reported already.
@@ -395,29 +365,19 @@ impl Reader<'_, '_> {
             .as_table()
             .is_some_and(|table| table.contains_key(key));
         if value.is_none() && !stands {
-            let message = format!("the key `{key}` is missing");
-            self.fields
-                .tell(Code::MissingKey, message, whole.span(), "");
+            self.fields.missing(key, whole.span(), "");
         }
         value
     }
 
     fn body(&mut self, name: &str, at: Span) -> Option<usize> {
-        let found = self.bodies.iter().position(|body| body == name);
-        if found.is_none() {
-            let names: Vec<String> = self.bodies.clone();
-            self.unknown("body", name, at, names.iter().map(String::as_str));
-        }
-        found
+        let bodies = self.bodies.clone();
+        self.named("body", name, at, bodies.iter().map(String::as_str))
     }
 
     fn point_named(&mut self, name: &str, at: Span) -> Option<usize> {
-        let found = self.points.iter().position(|point| point.name == name);
-        if found.is_none() {
-            let names: Vec<String> = self.points.iter().map(|p| p.name.clone()).collect();
-            self.unknown("point", name, at, names.iter().map(String::as_str));
-        }
-        found
+        let points: Vec<String> = self.points.iter().map(|p| p.name.clone()).collect();
+        self.named("point", name, at, points.iter().map(String::as_str))
     }
 
     fn place(&mut self, name: &str, at: Span) -> Option<Place> {
@@ -427,19 +387,25 @@ impl Reader<'_, '_> {
         self.point_named(name, at).map(Place::Point)
     }
 
-    fn unknown<'n>(
+    /// The place of a name among those that are known; other names are reported.
+    fn named<'n>(
         &mut self,
         what: &str,
         name: &str,
         at: Span,
-        known: impl Iterator<Item = &'n str> + Clone,
-    ) {
-        let help = did_you_mean(name, known.clone(), || {
-            let list: Vec<&str> = known.collect();
-            format!("there are {}", list.join(", "))
-        });
-        let message = format!("there is no {what} `{}`", shown(name));
-        self.fields.tell(Code::UnknownReference, message, at, &help);
+        mut known: impl Iterator<Item = &'n str> + Clone,
+    ) -> Option<usize> {
+        let all = known.clone();
+        let found = known.position(|own| own == name);
+        if found.is_none() {
+            let help = did_you_mean(name, all.clone(), || {
+                let list: Vec<&str> = all.collect();
+                format!("there are {}", list.join(", "))
+            });
+            let message = format!("there is no {what} `{}`", shown(name));
+            self.fields.tell(Code::UnknownReference, message, at, &help);
+        }
+        found
     }
 }
 

@@ -2,13 +2,14 @@
 
 use appell_estimate::Unknown;
 use appell_spec::Mechanism;
+use appell_spec::compose::Composition;
+use appell_spec::edit::EditError;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
-use super::effect::{Effect, EffectError, Family, Filter};
+use super::effect::{Effect, EffectError, Family};
 use super::load::Stated;
 use super::place::Source;
 use super::site::{DRIVES, Site, Sites};
-use super::site_kind::SiteKind;
 use super::term::{Term, texts};
 
 /// How a candidate acts.
@@ -130,61 +131,6 @@ impl Candidate {
         &self.items
     }
 
-    /// A measured force along a pseudo-velocity, no effect of the library: `force` is an expression of the spec
-    /// language, in which `{law}` is the prefix of its coefficients. Each of these has a unit and a normal prior.
-    pub(crate) fn measured(
-        mechanism: &Mechanism,
-        speed: &str,
-        force: &str,
-        numbers: &[(String, String, [f64; 2])],
-    ) -> Self {
-        let stem = unused(format!("law_{}", identifier(speed)), mechanism);
-        let mut document = DocumentMut::new();
-        let mut parameters = Table::new();
-        let mut terms = Vec::new();
-        for (name, unit, known) in numbers {
-            let name = format!("{stem}_{name}");
-            let (value, unit) = (Value::from(known[0]), Value::from(unit));
-            let item = InlineTable::from_iter([("value", value), ("unit", unit)]);
-            parameters.insert(&name, Item::Value(item.into()));
-            terms.push((name, Part::Term(*known)));
-        }
-        let load = InlineTable::from_iter([
-            ("kind", Value::from("generalized")),
-            ("velocity", speed.into()),
-            ("force", filled(force, &[("law", &stem)]).into()),
-        ]);
-        let loads = Table::from_iter([(stem.clone(), Value::from(load))]);
-        document.insert("parameters", Item::Table(parameters));
-        document.insert("loads", Item::Table(loads));
-        Self {
-            kind: "law".to_owned(),
-            site: speed.to_owned(),
-            group: Vec::new(),
-            family: Family::Force,
-            about: format!("measured force along {speed}"),
-            is_component: false,
-            acts: Acts::Items,
-            parameters: terms,
-            stem,
-            centre: None,
-            items: document.to_string(),
-            brings: None,
-            hides: None,
-            added: Vec::new(),
-            limits: None,
-            has_tolerance: false,
-            counts: 1,
-            shows: Vec::new(),
-            source: None,
-        }
-    }
-
-    /// Whether it is a measured force.
-    pub(crate) fn is_measured(&self) -> bool {
-        self.kind == "law"
-    }
-
     /// Whether it is a single effect at several sites, such as all drives.
     pub(crate) fn is_of_group(&self) -> bool {
         !self.group.is_empty()
@@ -196,15 +142,6 @@ impl Candidate {
             [] => vec![self.site.clone()],
             group => group.to_vec(),
         }
-    }
-
-    /// Prior means of its coefficients.
-    pub(crate) fn expected(&self) -> Vec<f64> {
-        let expected = |(_, part): &(String, Part)| match part {
-            Part::Term([expected, _]) => Some(*expected),
-            _ => None,
-        };
-        self.parameters.iter().filter_map(expected).collect()
     }
 
     /// Whether it replaces rolling of a contact by creep.
@@ -273,8 +210,9 @@ impl Candidate {
         sites: &Sites<'_>,
         others: &[Self],
     ) -> Result<Vec<Self>, EffectError> {
+        let encoders = sites.encoders();
         let mut candidates = Vec::new();
-        for site in sites.of(effect.site) {
+        for site in effect.site.of(sites) {
             for (index, variant) in effect.variants.iter().enumerate() {
                 let mut words = variant.iter();
                 let along = words.find(|(word, _)| word == "offset_along");
@@ -295,11 +233,8 @@ impl Candidate {
                 // The input of a servo is a set-point; what its actuator adds is a term of the load.
                 let adds_to = |name: &str| candidate.added.iter().any(|own| own.quantity == name);
                 // Those of an encoder in the loop of a servo are other effects of the same names.
-                let is_in_loop = matches!(effect.filter, Some(Filter::Bias | Filter::Scale))
-                    && sites
-                        .of(SiteKind::Encoder)
-                        .iter()
-                        .any(|own| own.index == site.index);
+                let is_in_loop = matches!(candidate.acts, Acts::Bias(_) | Acts::Scale(_))
+                    && encoders.iter().any(|own| own.index == site.index);
                 if !(adds_to(&site.name) && sites.is_servo(&site.name) || is_in_loop) {
                     candidates.push(candidate);
                 }
@@ -321,7 +256,7 @@ impl Candidate {
         group: &str,
         members: &[String],
     ) -> Result<Vec<Self>, EffectError> {
-        let mut places = sites.of(effect.site);
+        let mut places = effect.site.of(sites);
         places.retain(|site| members.contains(&site.name));
         let stem = unused(format!("{}_{}", effect.name, identifier(group)), mechanism);
         let own = places.iter().map(|site| {
@@ -348,18 +283,13 @@ impl Candidate {
             };
             return Ok(own.into_iter().map(component).collect());
         }
-        let parts = own.iter().map(|one| one.items.parse());
-        let mut items = DocumentMut::new();
-        for part in parts.filter_map(Result::<DocumentMut, _>::ok) {
-            merge(&mut items, &part);
-        }
         Ok(vec![Self {
             site: group.to_owned(),
             group: places.iter().map(|place| place.name.clone()).collect(),
             about,
             parameters: own.iter().flat_map(|one| one.parameters.clone()).collect(),
             stem,
-            items: items.to_string(),
+            items: merged(&own).unwrap_or_default(),
             ..first.clone()
         }])
     }
@@ -428,16 +358,6 @@ impl Candidate {
             }
         }
         let brings = document.contains_key("coordinates").then_some(site.index);
-        let acts = match effect.filter {
-            None => Acts::Items,
-            Some(Filter::Value) => Acts::Parameter(site.index),
-            Some(Filter::Lag) => Acts::Lag(site.index),
-            Some(Filter::Delay) => Acts::Delay(site.index),
-            Some(Filter::Bias) => Acts::Bias(site.index),
-            Some(Filter::Scale) => Acts::Scale(site.index),
-            Some(Filter::Late) => Acts::Late(site.index),
-            Some(Filter::Slow) => Acts::Slow(site.index),
-        };
         Ok(Self {
             kind: effect.name.clone(),
             site: site.name.clone(),
@@ -445,7 +365,7 @@ impl Candidate {
             family: effect.family,
             about: self::filled(&effect.about, &words),
             is_component: effect.is_vector,
-            acts,
+            acts: (effect.acts)(site.index),
             parameters,
             stem: id.to_owned(),
             centre: (site.words.iter())
@@ -464,19 +384,11 @@ impl Candidate {
     }
 }
 
-/// Adds the sections of another document; their keys are disjoint.
-fn merge(items: &mut DocumentMut, part: &DocumentMut) {
-    for (section, own) in part.iter() {
-        let whole = items
-            .entry(section)
-            .or_insert(Item::Table(Table::new()))
-            .as_table_like_mut();
-        if let (Some(whole), Some(own)) = (whole, own.as_table_like()) {
-            for (name, item) in own.iter() {
-                whole.insert(name, item.clone());
-            }
-        }
-    }
+/// The items of all, whose names differ.
+fn merged(all: &[Candidate]) -> Result<String, EditError> {
+    let mut items = Composition::new("")?;
+    all.iter().try_for_each(|one| items.add(&one.items))?;
+    Ok(items.text())
 }
 
 /// Moves the section `[channel]` to outputs: the measured quantities with the outputs that replace them.

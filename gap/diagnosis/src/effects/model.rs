@@ -94,7 +94,12 @@ pub fn candidates(
     effects: &[Effect],
     scales: &Scales,
 ) -> Result<Vec<Candidate>, ModelError> {
-    let sites = Sites::of_spec(mechanism, scales, &spec.text);
+    let text = &spec.text;
+    let sites = Sites {
+        mechanism,
+        scales,
+        text,
+    };
     let mut all = Vec::new();
     for effect in effects {
         let own = Candidate::all(effect, mechanism, &sites, &all)?;

@@ -88,39 +88,22 @@ pub(crate) struct Recorded<'a> {
     pub(crate) stretches: Vec<Stretch>,
     /// Covariance of the samples of the training runs.
     pub(super) noise: DMatrix<f64>,
-    pub(super) mechanics: Mechanics<'a>,
+    pub(super) relations: Relations<'a>,
 }
 
-/// States of motions.
-pub(super) struct Mechanics<'a> {
-    relations: Relations<'a>,
-    p: Vec<f64>,
-}
-
-impl<'a> Mechanics<'a> {
-    fn new(
-        model: &'a dyn Model,
-        measured: &[usize],
-        first: &Motion,
-        p: &[f64],
-    ) -> Result<Self, InverseError> {
-        let first = coordinates_of(first, measured.len());
-        let relations = Relations::new(model, measured, &first, p)?;
-        let p = p.to_vec();
-        Ok(Self { relations, p })
+/// State, accelerations and recorded inputs of a motion.
+pub(super) fn moment(
+    relations: &Relations<'_>,
+    motion: &Motion,
+    p: &[f64],
+) -> Result<Moment, InverseError> {
+    let count = relations.measured().len();
+    let mut moment = relations.moment(&coordinates_of(motion, count), p)?;
+    let given = motion.derivatives[0].iter().skip(count);
+    for (u, given) in moment.u.iter_mut().zip(given) {
+        *u = *given;
     }
-
-    /// State, accelerations and recorded inputs of a motion.
-    pub(super) fn moment(&self, motion: &Motion) -> Result<Moment, InverseError> {
-        let count = self.relations.measured().len();
-        let own = coordinates_of(motion, count);
-        let mut moment = self.relations.moment(&own, &self.p)?;
-        let given = motion.derivatives[0].iter().skip(count);
-        for (u, given) in moment.u.iter_mut().zip(given) {
-            *u = *given;
-        }
-        Ok(moment)
-    }
+    Ok(moment)
 }
 
 /// The recorded motions.
@@ -167,10 +150,11 @@ pub(crate) fn recorded<'a>(
             continue;
         }
         let track = Track::beside(&records, inputs.len())?;
-        let mechanics = Mechanics::new(model, &measured, &track.stretches[0].motions[0], p)?;
+        let first = coordinates_of(&track.stretches[0].motions[0], measured.len());
+        let relations = Relations::new(model, &measured, &first, p)?;
         for stretch in &track.stretches {
             let moments = stretch.motions.iter();
-            let moments = moments.map(|motion| Ok(mechanics.moment(motion)?));
+            let moments = moments.map(|motion| Ok(moment(&relations, motion, p)?));
             stretches.push(Stretch {
                 part,
                 run: stretch.run,
@@ -183,13 +167,13 @@ pub(crate) fn recorded<'a>(
                 shares: stretch.spread.clone(),
             });
         }
-        training.get_or_insert((track.noise, mechanics));
+        training.get_or_insert((track.noise, relations));
     }
-    let (noise, mechanics) = training.ok_or(InverseError::TooShort)?;
+    let (noise, relations) = training.ok_or(InverseError::TooShort)?;
     Ok(Recorded {
         stretches,
         noise,
-        mechanics,
+        relations,
     })
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::adjustment::{Equation, adjust};
 use super::error::BaseError;
-use super::moments::{Recorded, Stretch};
+use super::moments::{Recorded, Stretch, moment};
 
 use super::{Equations, Structure};
 
@@ -81,7 +81,7 @@ pub(super) fn fit(
     let speeds = model.info().speeds;
     let leading: Vec<usize> = structure.base.iter().map(|base| base.leading).collect();
     let equation = |motion: &Motion| {
-        let moment = recorded.mechanics.moment(motion)?;
+        let moment = moment(&recorded.relations, motion, p)?;
         let at = At {
             t: moment.t,
             x: &moment.x,
@@ -111,14 +111,10 @@ pub(super) fn fit(
         std,
         interval95: [-1.0, 1.0].map(|side| value + side * HALF_WIDTH_95 * std),
     });
-    let residuals = |rows: &[&Rows]| match rows {
-        [] => Vec::new(),
-        rows => residuals(rows, &adjusted.values, model),
-    };
     Ok(Fit {
         estimates: estimates.collect(),
-        training: residuals(&training),
-        test: residuals(&test),
+        training: residuals(&training, &adjusted.values, model),
+        test: residuals(&test, &adjusted.values, model),
         motions: training.iter().map(|rows| rows.right.len() / speeds).sum(),
         condition: adjusted.condition,
     })
@@ -196,21 +192,21 @@ fn rows(
     rows
 }
 
+/// Residuals of each equation; empty where there is no stretch.
 fn residuals(stretches: &[&Rows], values: &DVector<f64>, model: &dyn Model) -> Vec<Speed> {
     let info = model.info();
+    if stretches.is_empty() {
+        return Vec::new();
+    }
     let root_mean_square = |speed: usize, of: &dyn Fn(&Rows) -> DVector<f64>| {
-        let own = stretches.iter().flat_map(|rows| {
-            let all = of(rows);
-            let own: Vec<f64> = all
-                .iter()
-                .skip(speed)
-                .step_by(info.speeds)
-                .copied()
-                .collect();
-            own
-        });
-        let (sum, count) = own.fold((0.0, 0.0), |(sum, count), f| (sum + f * f, count + 1.0));
-        (sum / f64::max(count, 1.0)).sqrt()
+        let (mut sum, mut count) = (0.0, 0.0_f64);
+        for rows in stretches {
+            for f in of(rows).iter().skip(speed).step_by(info.speeds) {
+                sum += f * f;
+                count += 1.0;
+            }
+        }
+        (sum / count.max(1.0)).sqrt()
     };
     let speeds = info.speed_quantities().iter().enumerate();
     speeds

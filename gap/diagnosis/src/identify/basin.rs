@@ -39,26 +39,12 @@ pub(super) struct Search<'p, 'e> {
 }
 
 /// Prediction errors of a model, of the channel with the largest one.
+#[derive(Default)]
 struct Missed {
     /// By free runs, relative to the recorded motion.
     of_motion: f64,
     /// A second ahead, relative to the noise of the sensor.
     of_noise: f64,
-}
-
-impl Missed {
-    const NOTHING: Self = Self {
-        of_motion: 0.0,
-        of_noise: 0.0,
-    };
-    const EVERYTHING: Self = Self {
-        of_motion: f64::INFINITY,
-        of_noise: f64::INFINITY,
-    };
-
-    fn is_little(&self) -> bool {
-        self.of_motion <= MISSED && self.of_noise <= MISSED_AHEAD
-    }
 }
 
 impl Search<'_, '_> {
@@ -80,7 +66,8 @@ impl Search<'_, '_> {
         }
         let is_enough = |fit: &&Fit| fit.is_optimum() || self.options.rough;
         let ended = found.as_ref().ok().filter(is_enough);
-        if self.missed(ended)?.is_little() {
+        let missed = self.missed(ended)?;
+        if missed.of_motion <= MISSED && missed.of_noise <= MISSED_AHEAD {
             return found;
         }
         stage("fitting with little process noise");
@@ -169,7 +156,10 @@ impl Search<'_, '_> {
     /// The prediction errors of a fitted model; infinite without one.
     fn missed(&self, fit: Option<&Fit>) -> Result<Missed, IdentifyError> {
         let Some(fit) = fit else {
-            return Ok(Missed::EVERYTHING);
+            return Ok(Missed {
+                of_motion: f64::INFINITY,
+                of_noise: f64::INFINITY,
+            });
         };
         let recordings = self.estimation.recordings();
         let layout = self.estimation.layout();
@@ -200,7 +190,7 @@ impl Search<'_, '_> {
                 sums.count += ahead.iter().filter(own).count() as f64;
             }
         }
-        let mut missed = Missed::NOTHING;
+        let mut missed = Missed::default();
         for (channel, sums) in sums.iter().enumerate() {
             let noise = self.problem.start[layout.place(Unknown::Noise(channel))?];
             let of_motion = relative(sums.free_run, sums.motion);

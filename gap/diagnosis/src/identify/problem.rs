@@ -219,6 +219,17 @@ pub(crate) fn begin(
     Ok(starts)
 }
 
+/// The values of a fit on other runs, with the states at the first rows of these.
+pub(super) fn begun(estimation: &Estimation<'_>, fit: &[f64]) -> Result<Vec<f64>, IdentifyError> {
+    let first_run = Unknown::Initial { run: 0, state: 0 };
+    let first_run = estimation.layout().place(first_run)?;
+    let mut values = estimation.nominal();
+    // The values before those of the runs have the same indices.
+    values[..first_run].copy_from_slice(&fit[..first_run]);
+    begin(estimation, &mut values)?;
+    Ok(values)
+}
+
 /// Root mean square of an input about its first value. The input before the first row is unknown to that extent, and
 /// so is the initial state of a lag.
 fn course(recording: &Recording, input: usize) -> f64 {

@@ -19,6 +19,7 @@ use appell_estimate::{HALF_WIDTH_95, in_parallel};
 use appell_recordings::Part;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use super::LinearEquations;
 use super::error::BaseError;
 use super::moments::{Recorded, Stretch};
 
@@ -41,13 +42,8 @@ const ZERO: f64 = 1e-12;
 const BLOCK_S: f64 = 1.0;
 const FEWEST_BLOCKS: f64 = 10.0;
 
-/// The equations of a motion, by all of its columns.
-pub(super) struct Equation {
-    pub(super) base: DMatrix<f64>,
-    pub(super) rest: DVector<f64>,
-}
-
-pub(super) type Equations<'e> = &'e (dyn Fn(&Motion) -> Result<Equation, BaseError> + Sync);
+/// The equations of a motion, by all of its columns, with the base parameters alone.
+pub(super) type Equations<'e> = &'e (dyn Fn(&Motion) -> Result<LinearEquations, BaseError> + Sync);
 
 /// Adjusted parameters.
 pub(super) struct Adjusted {
@@ -174,8 +170,8 @@ fn linearise(
 ) -> Result<Linear, BaseError> {
     let e = |motion: &Motion| {
         let own = equations(motion)?;
-        let e = &own.base * values + &own.rest;
-        Ok::<_, BaseError>((own.base, e))
+        let e = &own.regressor * values + &own.rest;
+        Ok::<_, BaseError>((own.regressor, e))
     };
     let columns = noise.nrows();
     let (mut bases, mut w, mut jacobians) = (Vec::new(), Vec::new(), Vec::new());

@@ -3,15 +3,15 @@
 use appell_estimate::HALF_WIDTH_95;
 use appell_estimate::inverse::Motion;
 use appell_recordings::Part;
-use appell_runtime::model::{At, Model};
+use appell_runtime::model::Model;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use super::adjustment::{Equation, adjust};
+use super::adjustment::adjust;
 use super::error::BaseError;
 use super::moments::{Recorded, Stretch, moment};
 
-use super::{Equations, Structure};
+use super::{Equations, LinearEquations, Structure};
 
 /// The estimate of a base parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,16 +82,10 @@ pub(super) fn fit(
     let leading: Vec<usize> = structure.base.iter().map(|base| base.leading).collect();
     let equation = |motion: &Motion| {
         let moment = moment(&recorded.relations, motion, p)?;
-        let at = At {
-            t: moment.t,
-            x: &moment.x,
-            u: &moment.u,
-            p,
-        };
-        let linear = equations.at(at, &moment.accelerations);
-        Ok(Equation {
-            base: linear.regressor.select_columns(&leading),
-            rest: linear.rest,
+        let linear = equations.at(&moment, &moment.u, p);
+        Ok(LinearEquations {
+            regressor: linear.regressor.select_columns(&leading),
+            ..linear
         })
     };
     let start = DVector::from_iterator(leading.len(), structure.base.iter().map(|own| own.nominal));
@@ -135,13 +129,7 @@ fn gains(
     let columns = |input: f64| {
         let mut u = moment.u.clone();
         u[..model.info().declared_inputs].fill(input);
-        let at = At {
-            t: moment.t,
-            x: &moment.x,
-            u: &u,
-            p,
-        };
-        equations.at(at, &moment.accelerations).regressor
+        equations.at(moment, &u, p).regressor
     };
     let change = columns(1.0) - columns(0.0);
     let parameters = structure.parameters.iter().zip(change.column_iter());
@@ -168,16 +156,10 @@ fn rows(
         inputs: DVector::zeros(count),
     };
     for (place, moment) in stretch.moments.iter().enumerate() {
-        let at = |u| At {
-            t: moment.t,
-            x: &moment.x,
-            u,
-            p,
-        };
-        let linear = equations.at(at(&moment.u), &moment.accelerations);
+        let linear = equations.at(moment, &moment.u, p);
         let mut without = moment.u.clone();
         without[..model.info().declared_inputs].fill(0.0);
-        let free = equations.at(at(&without), &moment.accelerations);
+        let free = equations.at(moment, &without, p);
         let values = DVector::from_column_slice(&linear.values);
         let nominal = &linear.regressor * values + &linear.rest;
         let first = place * speeds;

@@ -176,8 +176,11 @@ impl Candidate {
         }
     }
 
-    /// The candidate with the declarations of its parameters only.
+    /// The candidate; one that adds a coordinate with the declarations of its parameters only.
     pub(super) fn declared(&self) -> Self {
+        if self.brings.is_none() {
+            return self.clone();
+        }
         let mut document: DocumentMut = self.items.parse().unwrap_or_default();
         document.retain(|section, _| section == "parameters");
         Self {

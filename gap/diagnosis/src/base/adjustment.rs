@@ -226,6 +226,14 @@ fn stacked(blocks: &[DMatrix<f64>]) -> DMatrix<f64> {
 }
 
 impl Piece<'_> {
+    /// From the first motion to the last in s.
+    fn length(&self) -> f64 {
+        match &self.motions[..] {
+            [first, .., last] => last.t - first.t,
+            _ => 0.0,
+        }
+    }
+
     /// J C Jᵀ.
     fn covariance(
         &self,
@@ -444,16 +452,6 @@ impl Adjusted {
             values: values.clone(),
             deviations: DVector::from_fn(count, |i, _| deviation(i)),
             condition: solved.condition,
-        }
-    }
-}
-
-impl Piece<'_> {
-    /// From the first motion to the last in s.
-    fn length(&self) -> f64 {
-        match &self.motions[..] {
-            [first, .., last] => last.t - first.t,
-            _ => 0.0,
         }
     }
 }

@@ -4,7 +4,7 @@ use appell_estimate::Unknown;
 use appell_spec::Mechanism;
 use appell_spec::compose::Composition;
 use appell_spec::edit::EditError;
-use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
+use toml_edit::{DocumentMut, InlineTable, Item, TableLike, Value};
 
 use super::effect::{Effect, EffectError, Family};
 use super::load::Stated;
@@ -13,9 +13,10 @@ use super::site::{DRIVES, Site, Sites};
 use super::term::{Term, texts};
 
 /// How a candidate acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Acts {
     /// By items of the spec, with parameters of its own.
+    #[default]
     Items,
     /// By the value of a parameter that the spec has.
     Parameter(usize),
@@ -76,7 +77,7 @@ impl Part {
 }
 
 /// An effect at a site.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Candidate {
     /// Kind of the effect.
     pub kind: String,
@@ -209,7 +210,6 @@ impl Candidate {
     /// same name.
     pub(super) fn all(
         effect: &Effect,
-        mechanism: &Mechanism,
         sites: &Sites<'_>,
         others: &[Self],
     ) -> Result<Vec<Self>, EffectError> {
@@ -228,7 +228,7 @@ impl Candidate {
                 } else {
                     stem
                 };
-                let mut id = unused(id, mechanism);
+                let mut id = unused(id, sites.mechanism);
                 while others.iter().any(|own| own.stem == id) {
                     id += "_too";
                 }
@@ -245,7 +245,7 @@ impl Candidate {
         }
         if effect.is_together {
             for (name, members) in sites.groups(effect.site) {
-                candidates.extend(Self::together(effect, mechanism, sites, &name, &members)?);
+                candidates.extend(Self::together(effect, sites, &name, &members)?);
             }
         }
         Ok(candidates)
@@ -254,14 +254,16 @@ impl Candidate {
     /// An effect at a group of sites, with sizes for each of them; of signals, a component for each site.
     fn together(
         effect: &Effect,
-        mechanism: &Mechanism,
         sites: &Sites<'_>,
         group: &str,
         members: &[String],
     ) -> Result<Vec<Self>, EffectError> {
         let mut places = effect.site.of(sites);
         places.retain(|site| members.contains(&site.name));
-        let stem = unused(format!("{}_{}", effect.name, identifier(group)), mechanism);
+        let stem = unused(
+            format!("{}_{}", effect.name, identifier(group)),
+            sites.mechanism,
+        );
         let own = places.iter().map(|site| {
             let id = format!("{stem}_{}", identifier(&site.name));
             Self::new(effect, site, &id, &effect.variants[0])
@@ -304,16 +306,14 @@ impl Candidate {
         variant: &[(String, String)],
     ) -> Result<Self, EffectError> {
         let mut words: Vec<(&str, &str)> = vec![("effect", id), ("site", &site.name)];
-        let own = variant
-            .iter()
-            .map(|(word, text)| (word.as_str(), text.as_str()));
+        let own = variant.iter();
+        let own = own.map(|(word, text)| (word.as_str(), text.as_str()));
         // Placeholders of a variant may contain placeholders of the site.
         let of_site = site.words.iter().map(|(word, text)| (*word, text.as_str()));
         words.extend(own.chain(of_site));
         let filled = filled(&filled(&effect.text, &words), &words);
-        let file = effect.file.clone();
         let source = Source {
-            file: file.unwrap_or_else(|| effect.name.clone()),
+            file: effect.file.as_ref().unwrap_or(&effect.name).clone(),
             text: effect.text.clone(),
             words: (words.iter())
                 .map(|(word, text)| ((*word).to_owned(), (*text).to_owned()))
@@ -328,10 +328,8 @@ impl Candidate {
         let limits = site.stated.clone().zip(limits);
         let shows = shown(&mut document, id);
         document.remove("effect");
-        let switch = effect
-            .switch
-            .as_deref()
-            .map(|text| self::filled(text, &words));
+        let switch = effect.switch.as_deref();
+        let switch = switch.map(|text| self::filled(text, &words));
         let mut parameters = Vec::new();
         if let Some(table) = document
             .get_mut("parameters")
@@ -360,11 +358,9 @@ impl Candidate {
                 parameters.push((name, part));
             }
         }
-        let brings = document.contains_key("coordinates").then_some(site.index);
         Ok(Self {
             kind: effect.name.clone(),
             site: site.name.clone(),
-            group: Vec::new(),
             family: effect.family,
             about: self::filled(&effect.about, &words),
             is_component: effect.is_vector,
@@ -375,14 +371,14 @@ impl Candidate {
                 .find(|(word, _)| *word == "centre")
                 .map(|(_, name)| name.clone()),
             items: document.to_string(),
-            brings,
-            hides: None,
+            brings: document.contains_key("coordinates").then_some(site.index),
             added,
             limits,
             has_tolerance: effect.has_tolerance,
             counts: effect.counts,
             shows,
             source: effect.file.is_some().then_some(source),
+            ..Self::default()
         })
     }
 }
@@ -402,9 +398,7 @@ fn shown(document: &mut DocumentMut, id: &str) -> Vec<(String, String)> {
     for (state, value) in channel.filter(|(_, value)| !value.is_empty()) {
         let output = format!("{id}_shows_{state}");
         let item = InlineTable::from_iter([("value", Value::from(value))]);
-        let outputs = document
-            .entry("outputs")
-            .or_insert(Item::Table(Table::new()));
+        let outputs = document.entry("outputs").or_insert(toml_edit::table());
         if let Some(outputs) = outputs.as_table_like_mut() {
             outputs.insert(&output, Item::Value(item.into()));
         }
@@ -427,11 +421,9 @@ fn compute(table: &mut dyn TableLike, key: &str) -> Result<(), String> {
     let Some(text) = table.get(key).and_then(Item::as_str).map(str::to_owned) else {
         return Ok(());
     };
-    let factors: Result<Vec<f64>, _> = text
-        .split('*')
-        .map(|factor| factor.trim().parse::<f64>())
-        .collect();
-    let product = factors.map_err(|_| text)?.iter().product::<f64>();
+    let factors = text.split('*').map(|factor| factor.trim().parse::<f64>());
+    let product: Result<f64, _> = factors.product();
+    let product = product.map_err(|_| text.clone())?;
     table.insert(key, Item::Value(Value::from(product)));
     Ok(())
 }

@@ -38,9 +38,10 @@ use super::site_kind::{KINDS, SiteKind};
 use appell_recordings::fields::{Fields, Value};
 
 /// Families of effects.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 #[expect(missing_docs, reason = "the words of the report")]
 pub enum Family {
+    #[default]
     Force,
     Parameter,
     Actuator,
@@ -144,19 +145,6 @@ pub(super) const KEYS: &[&str] = &[
 const EVERYWHERE: &[&str] = &["effect", "site"];
 
 impl Effect {
-    /// Reads a user-defined effect from a file; `name` is its name unless the file states one.
-    pub fn read(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
-        Ok(Self {
-            file: Some(file.to_owned()),
-            ..Self::parsed(name, file, text)?
-        })
-    }
-
-    /// Reads an effect that is shipped.
-    pub(super) fn shipped(name: &str, text: &str) -> Result<Self, EffectError> {
-        Self::parsed(name, &format!("{name}.toml"), text)
-    }
-
     /// The whole file.
     pub fn text(&self) -> &str {
         &self.text
@@ -180,7 +168,8 @@ impl Effect {
         self.text.lines().map_while(|line| line.strip_prefix('#'))
     }
 
-    fn parsed(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
+    /// Reads a user-defined effect from a file; `name` is its name unless the file states one.
+    pub fn read(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
         let (mut fields, table) = Fields::new(file, text);
         let table = table.get_ref();
         if fields.is_wrong() {
@@ -244,7 +233,7 @@ impl Effect {
             acts: filter.unwrap_or(|_| Acts::Items),
             has_tolerance,
             text: text.to_owned(),
-            file: None,
+            file: Some(file.to_owned()),
         })
     }
 }
@@ -382,31 +371,28 @@ mod tests {
 
     #[test]
     fn a_file_tells_what_it_lacks_and_where() {
-        let lacks = |text, message: &str, place: &str| {
+        let slew = "[effect]\nfamily = 'actuator'\nsite = 'input'\nabout = 'slew rate of {site}'\n[coordinates]\n\
+                    z = { unit = 'm' }";
+        let moon = "[effect]\nfamily = 'force'\nsite = 'moon'";
+        let famly = "[effect]\nfamly = 'force'";
+        for (text, message, place) in [
+            ("[loads]", "the section `[effect]` is missing", "1:1"),
+            ("[effect]\nsite = 'body'", "`family` is missing", "1:"),
+            (moon, "`site` is one of coordinate", "3:8"),
+            (famly, "did you mean `family`?", "2:1"),
+            (
+                slew,
+                "an effect adds a coordinate only at a `driven_slider`",
+                "5:",
+            ),
+        ] {
+            let place = format!("mine/own.toml:{place}");
             let errors = errors(text);
             assert!(
-                errors.contains(message) && errors.contains(place),
+                errors.contains(message) && errors.contains(&place),
                 "{errors}"
             );
-        };
-        let place = "mine/own.toml:1:1";
-        lacks("[loads]", "the section `[effect]` is missing", place);
-        lacks(
-            "[effect]\nsite = 'body'",
-            "`family` is missing",
-            "mine/own.toml:1:",
-        );
-        lacks(
-            "[effect]\nfamily = 'force'\nsite = 'moon'",
-            "`site` is one of coordinate",
-            "mine/own.toml:3:8",
-        );
-        lacks("[effect]\nfamly = 'force'", "did you mean `family`?", "2:1");
-        lacks(
-            "[effect]\nfamily = 'actuator'\nsite = 'input'\nabout = 'slew rate of {site}'\n[coordinates]\nz = { unit = 'm' }",
-            "an effect adds a coordinate only at a `driven_slider`",
-            "mine/own.toml:5:",
-        );
+        }
     }
 
     #[test]

@@ -230,23 +230,12 @@ impl Candidate {
         Self {
             kind: "law".to_owned(),
             site: site.to_owned(),
-            group: Vec::new(),
             family: Family::Force,
-            about: String::new(),
-            is_component: false,
             acts: Acts::Items,
             parameters: known.iter().map(parameter).collect(),
             stem,
-            centre: None,
-            items: String::new(),
-            brings: None,
-            hides: None,
-            added: Vec::new(),
-            limits: None,
-            has_tolerance: false,
             counts: 1,
-            shows: Vec::new(),
-            source: None,
+            ..Self::default()
         }
     }
 

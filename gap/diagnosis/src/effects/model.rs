@@ -102,7 +102,7 @@ pub fn candidates(
     };
     let mut all = Vec::new();
     for effect in effects {
-        let own = Candidate::all(effect, mechanism, &sites, &all)?;
+        let own = Candidate::all(effect, &sites, &all)?;
         own.iter()
             .try_for_each(|candidate| check(spec, candidate))?;
         all.extend(own);

@@ -37,12 +37,8 @@ pub(super) fn random(model: &dyn Model, count: usize, p: &[f64]) -> Vec<Moment> 
             let [low, high] = q.range;
             (low.max(q.value - PI), high.min(q.value + PI))
         };
-        let ranges: Vec<_> = info
-            .coordinate_quantities()
-            .iter()
-            .map(coordinate)
-            .collect();
-        x.extend(ranges.iter().map(|&(low, high)| between(low, high)));
+        let ranges = info.coordinate_quantities().iter().map(coordinate);
+        x.extend(ranges.map(|(low, high)| between(low, high)));
         let accelerations = (0..info.speeds).map(|_| between(-ACCELERATION, ACCELERATION));
         let accelerations: Vec<f64> = accelerations.collect();
         let u: Vec<f64> = (0..info.input_len())
@@ -114,23 +110,22 @@ pub(crate) fn recorded<'a>(
 ) -> Result<Recorded<'a>, BaseError> {
     let info = model.info();
     let columns = coordinates(set);
-    let mut inputs = Vec::with_capacity(info.declared_inputs);
-    for input in 0..info.declared_inputs {
-        let is_own = |role: Role| role == Role::Input(input);
-        let place = set.channels.iter().position(|channel| is_own(channel.role));
-        inputs.push(place.ok_or_else(|| BaseError::NoInput {
+    let inputs = (0..info.declared_inputs).map(|input| {
+        let mut channels = set.channels.iter();
+        let place = channels.position(|channel| channel.role == Role::Input(input));
+        place.ok_or_else(|| BaseError::NoInput {
             input: info.inputs[input].name.to_string(),
-        })?);
-    }
+        })
+    });
+    let inputs: Vec<usize> = inputs.collect::<Result<_, _>>()?;
     let measured: Vec<usize> = columns.iter().map(|(_, coordinate)| *coordinate).collect();
     let mut stretches = Vec::new();
     let mut training = None;
     for part in [Part::Fit, Part::Test] {
         let runs = set.runs.iter().filter(|run| run.part == part);
         let record = |run: &Run| {
-            let coordinates = columns
-                .iter()
-                .map(|(column, _)| run.values[*column].clone());
+            let coordinates = columns.iter();
+            let coordinates = coordinates.map(|(column, _)| run.values[*column].clone());
             let inputs = inputs.iter().map(|&column| {
                 let values = &run.values[column];
                 if set.channels[column].is_joined() {
@@ -180,10 +175,8 @@ pub(crate) fn recorded<'a>(
 /// An input that is held from row to row, about each of them: its mean over half a row before and after.
 fn about_rows(values: &[f64]) -> Vec<f64> {
     let before = values.iter().take(1).chain(values);
-    let pairs = before.zip(values);
-    pairs
-        .map(|(before, after)| 0.5 * (before + after))
-        .collect()
+    let means = before.zip(values).map(|(a, b)| 0.5 * (a + b));
+    means.collect()
 }
 
 /// A motion with its coordinates alone.

@@ -319,9 +319,10 @@ impl Candidate {
                 .map(|(word, text)| ((*word).to_owned(), (*text).to_owned()))
                 .collect(),
         };
-        let mut document: DocumentMut = filled
-            .parse()
-            .map_err(|e: toml_edit::TomlError| source.unwritten(e.message()))?;
+        let mut document: DocumentMut = filled.parse().map_err(|e: toml_edit::TomlError| {
+            let problem = "with its placeholders replaced, the file is not TOML";
+            source.wrong(&[], &format!("{problem}: {}", e.message()))
+        })?;
         let added = Term::of(&mut document);
         let load = document.remove("load");
         let limits = load.iter().flat_map(texts).map(|(_, text)| text).next();
@@ -337,13 +338,13 @@ impl Candidate {
         {
             for (name, item) in table.iter_mut() {
                 let name = name.get().to_owned();
-                let item = item
-                    .as_table_like_mut()
-                    .ok_or_else(|| source.wrong(&name, None, "a parameter is a table"))?;
+                let item = item.as_table_like_mut().ok_or_else(|| {
+                    source.wrong(&["parameters", &name], "a parameter is a table")
+                })?;
                 for key in ["value", "at_least", "at_most", "std"] {
                     compute(item, key).map_err(|text| {
                         let message = format!("`{text}` is no product of numbers");
-                        source.wrong(&name, Some(key), &message)
+                        source.wrong(&["parameters", &name, key], &message)
                     })?;
                 }
                 let is_zero = item.get("value").and_then(number).is_some_and(|v| v == 0.0);

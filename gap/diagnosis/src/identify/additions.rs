@@ -75,17 +75,14 @@ pub(super) fn named(
             unit,
         })
     };
-    let known = || {
-        let names = all.iter().flat_map(|(owners, kinds)| {
-            let names = |owner| kinds.iter().map(move |(what, _)| format!("{owner}.{what}"));
-            owners.iter().flat_map(names)
-        });
-        names.collect()
-    };
+    let known = all.iter().flat_map(|(owners, kinds)| {
+        let names = |owner| kinds.iter().map(move |(what, _)| format!("{owner}.{what}"));
+        owners.iter().flat_map(names)
+    });
     let found = |name| {
         find(name).ok_or_else(|| IdentifyError::UnknownAddition {
             name: name.clone(),
-            known: known(),
+            known: known.clone().collect(),
         })
     };
     names.iter().map(found).collect()
@@ -121,21 +118,30 @@ impl Addition {
     pub(super) fn free(&self, estimation: &Estimation<'_>, runs: &[Run]) -> (Free, Quantity) {
         let setup = estimation.setup();
         let place = |list: &[usize]| list.iter().position(|own| *own == self.index);
-        let unknown = match self.kind {
-            Kind::Lag => Unknown::Lag(place(&setup.lagging).unwrap_or(0)),
-            Kind::InputDelay => Unknown::InputDelay(place(&setup.delayed).unwrap_or(0)),
-            Kind::Bias => Unknown::Bias(self.index),
-            Kind::Scale => Unknown::Scale(self.index),
-            Kind::SensorDelay => Unknown::SensorDelay(self.index),
-        };
         // A lag shorter than the steps has no effect and makes the equations stiff.
         let steps = runs.iter().map(|run| run.sampling.step);
         let step = steps.fold(0.0, f64::max).min(setup.longest_step);
-        let (value, range) = match self.kind {
-            Kind::Lag => (step, [step, LONGEST_LAG]),
-            Kind::InputDelay | Kind::SensorDelay => (0.0, [0.0, LONGEST_DELAY]),
-            Kind::Bias => (0.0, [f64::NEG_INFINITY, f64::INFINITY]),
-            Kind::Scale => (1.0, [f64::MIN_POSITIVE, f64::INFINITY]),
+        let index = self.index;
+        let (unknown, value, range) = match self.kind {
+            Kind::Lag => {
+                let lag = Unknown::Lag(place(&setup.lagging).unwrap_or(0));
+                (lag, step, [step, LONGEST_LAG])
+            }
+            Kind::InputDelay => {
+                let delay = Unknown::InputDelay(place(&setup.delayed).unwrap_or(0));
+                (delay, 0.0, [0.0, LONGEST_DELAY])
+            }
+            Kind::SensorDelay => (Unknown::SensorDelay(index), 0.0, [0.0, LONGEST_DELAY]),
+            Kind::Bias => (
+                Unknown::Bias(index),
+                0.0,
+                [f64::NEG_INFINITY, f64::INFINITY],
+            ),
+            Kind::Scale => (
+                Unknown::Scale(index),
+                1.0,
+                [f64::MIN_POSITIVE, f64::INFINITY],
+            ),
         };
         let (unit, scale) = self.unit.clone();
         let quantity = Quantity {

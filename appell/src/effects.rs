@@ -60,7 +60,7 @@ pub fn overview(effects: &[Effect]) -> String {
         [
             effect.name.clone(),
             effect.family.word().to_owned(),
-            effect.site.word().replace('_', " "),
+            effect.site.word.replace('_', " "),
             first.trim_end_matches('.').to_owned(),
         ]
     });
@@ -125,7 +125,7 @@ impl Example {
         let _ = writeln!(
             text,
             "\nSites: each {}. In {}: {}",
-            effect.site.about(),
+            effect.site.about,
             self.mechanism,
             if self.sites.is_empty() {
                 "none".to_owned()
@@ -159,8 +159,8 @@ impl Example {
         json!({
             "name": effect.name,
             "family": effect.family.word(),
-            "site": effect.site.word(),
-            "sites": effect.site.about(),
+            "site": effect.site.word,
+            "sites": effect.site.about,
             "about": effect.about,
             "law": effect.law(),
             "picture": effect.picture(),

@@ -30,12 +30,9 @@ pub(crate) fn completion(document: &Document, position: Position) -> Vec<Complet
         Form::Reference(target) => named(document, target, Some(&string.path)),
         Form::Quaternion => named(document, Target::Coordinate, None),
         Form::Two(target) => named(document, target, None),
-        Form::Expression | Form::Components | Form::Matrix | Form::Inertia(_) => {
-            let before = document.text.part(&(string.span.start + 1..at));
-            in_expression(document, string, before)
-        }
         // A single word is not an expression.
-        Form::Direction if is_in_list(text, string) => {
+        Form::Direction if !is_in_list(text, string) => Vec::new(),
+        Form::Expression | Form::Components | Form::Matrix | Form::Inertia(_) | Form::Direction => {
             let before = document.text.part(&(string.span.start + 1..at));
             in_expression(document, string, before)
         }
@@ -153,12 +150,10 @@ fn in_expression(document: &Document, string: &Part, before: &str) -> Vec<Comple
             all.extend(items);
         }
     }
-    let coordinates = document.reading.expanded().items("coordinates");
-    let rate = coordinates
-        .first()
-        .map(|q| format!("dot({})", q.name.value));
     let function = CompletionItemKind::FUNCTION;
-    if rate.is_some_and(|rate| is_allowed(&rate)) {
+    let coordinates = document.reading.expanded().items("coordinates");
+    let mut rate = coordinates.iter().take(1);
+    if rate.any(|q| is_allowed(&format!("dot({})", q.name.value))) {
         all.push(item("dot", function, "dot(q), the rate of a coordinate"));
     }
     if is_allowed("t") {
@@ -201,11 +196,9 @@ fn call_around(before: &str) -> Option<(&str, usize)> {
 
 /// Whether an expression is valid in the string at the cursor, decided by the checks of the spec.
 fn is_allowed(document: &Document, string: &Part, expression: &str) -> bool {
-    let (text, span) = (document.text.as_str(), &string.span);
-    let (Some(before), Some(after)) = (text.get(..span.start), text.get(span.end..)) else {
-        return false;
-    };
-    let tried = format!("{before}\"{expression}\"{after}");
+    let span = &string.span;
+    let mut tried = document.text.as_str().to_owned();
+    tried.replace_range(span.clone(), &format!("\"{expression}\""));
     let end = span.start + expression.len() + 2;
     let refuses = |finding: &appell_spec::Diagnostic| {
         let place = finding.labels.first().map(|(place, _)| place.start);

@@ -15,11 +15,8 @@ pub(crate) fn shown(document: &Document, findings: &[Diagnostic]) -> Vec<Shown> 
 }
 
 fn one(document: &Document, finding: &Diagnostic) -> Shown {
-    let (range, words) = match finding.labels.first() {
-        Some((span, words)) => (document.text.range(span), words.as_str()),
-        None => (document.text.range(&(0..0)), ""),
-    };
-    let words = match words {
+    let (span, words) = finding.labels.first().cloned().unwrap_or_default();
+    let words = match words.as_str() {
         "" => String::new(),
         words => format!(" ({words})"),
     };
@@ -33,7 +30,7 @@ fn one(document: &Document, finding: &Diagnostic) -> Shown {
     });
     let others: Vec<_> = others.collect();
     Shown {
-        range,
+        range: document.text.range(&span),
         severity: Some(match finding.severity {
             Severity::Error => DiagnosticSeverity::ERROR,
             Severity::Warning => DiagnosticSeverity::WARNING,

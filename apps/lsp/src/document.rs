@@ -25,14 +25,14 @@ pub(crate) struct Document {
 }
 
 impl Document {
-    pub(crate) fn new(uri: Uri, version: i32, text: Text) -> Self {
+    pub(crate) fn new(uri: Uri, version: i32, revision: u64, text: Text) -> Self {
         let outline = Outline::new(text.as_str());
         let reading = Reading::new(uri.as_str(), text.as_str());
         Self {
             occurrences: occurrences(text.as_str(), &reading.ast, &outline),
             uri,
             version,
-            revision: 0,
+            revision,
             text,
             outline,
             reading,

@@ -15,7 +15,7 @@ use lsp_types::request::{
     Request as Asked, Shutdown,
 };
 use lsp_types::{
-    Diagnostic, LogMessageParams, MessageType, PublishDiagnosticsParams, ReferenceParams,
+    Diagnostic, LogMessageParams, MessageType, Position, PublishDiagnosticsParams, ReferenceParams,
     RenameParams, TextDocumentPositionParams, TextDocumentSyncKind, Uri,
 };
 use serde::Serialize;
@@ -82,13 +82,17 @@ pub fn serve(connection: &Connection) -> std::io::Result<()> {
 /// The protocol's error code, and the reason.
 type Refusal = (i32, String);
 
+fn refused(code: ErrorCode, reason: impl ToString) -> Refusal {
+    (code as i32, reason.to_string())
+}
+
 fn read<T: DeserializeOwned>(params: Value) -> Result<T, Refusal> {
-    from_value(params).map_err(|error| (ErrorCode::InvalidParams as i32, error.to_string()))
+    from_value(params).map_err(|error| refused(ErrorCode::InvalidParams, error))
 }
 
 fn written(result: impl Serialize) -> Result<Value, Refusal> {
     let result = serde_json::to_value(result);
-    result.map_err(|error| (ErrorCode::InternalError as i32, error.to_string()))
+    result.map_err(|error| refused(ErrorCode::InternalError, error))
 }
 
 struct Server {
@@ -105,13 +109,13 @@ impl Server {
     fn request(&mut self, request: Request) {
         let Request { id, method, params } = request;
         let answer = catch_unwind(AssertUnwindSafe(|| self.in_turn(&method, params)));
+        let answer = answer.unwrap_or_else(|_| {
+            let reason = "a mistake in the language server";
+            Err(refused(ErrorCode::InternalError, reason))
+        });
         let answer = match answer {
-            Ok(Ok(result)) => Response::new_ok(id, result),
-            Ok(Err((code, reason))) => Response::new_err(id, code, reason),
-            Err(_) => {
-                let reason = "a mistake in the language server".to_owned();
-                Response::new_err(id, ErrorCode::InternalError as i32, reason)
-            }
+            Ok(result) => Response::new_ok(id, result),
+            Err((code, reason)) => Response::new_err(id, code, reason),
         };
         // An editor that has disconnected needs no answer.
         let _ = self.messages.send(answer.into());
@@ -125,8 +129,8 @@ impl Server {
                 Ok(json!({ "capabilities": capabilities() }))
             }
             (Phase::New, _) => {
-                let reason = "`initialize` comes first".to_owned();
-                Err((ErrorCode::ServerNotInitialized as i32, reason))
+                let reason = "`initialize` comes first";
+                Err(refused(ErrorCode::ServerNotInitialized, reason))
             }
             (Phase::Serving, Shutdown::METHOD) => {
                 self.phase = Phase::Closing;
@@ -134,7 +138,7 @@ impl Server {
             }
             (Phase::Closing, _) | (Phase::Serving, Initialize::METHOD) => {
                 let reason = format!("`{}` is not possible any more", shown(method));
-                Err((ErrorCode::InvalidRequest as i32, reason))
+                Err(refused(ErrorCode::InvalidRequest, reason))
             }
             (Phase::Serving, _) => self.answer(method, params),
         }
@@ -142,39 +146,31 @@ impl Server {
 
     /// The answer to a request at a position; nothing if no spec is open.
     fn answer(&self, method: &str, params: Value) -> Result<Value, Refusal> {
-        let offered = [
-            HoverRequest::METHOD,
-            GotoDefinition::METHOD,
-            References::METHOD,
-            PrepareRenameRequest::METHOD,
-            Rename::METHOD,
-            Completion::METHOD,
-        ];
-        if !offered.contains(&method) {
-            let reason = format!("no method `{}`", shown(method));
-            return Err((ErrorCode::MethodNotFound as i32, reason));
-        }
-        let at: TextDocumentPositionParams = read(params.clone())?;
-        let document = self.documents.get(at.text_document.uri.as_str());
-        let Some(document) = document.filter(|document| document.is_spec()) else {
-            return Ok(Value::Null);
-        };
-        let at = at.position;
-        match method {
-            HoverRequest::METHOD => written(hover::hover(document, at)),
-            GotoDefinition::METHOD => written(names::definition(document, at)),
-            References::METHOD => {
+        let answer: fn(&Document, Position, Value) -> Result<Value, Refusal> = match method {
+            HoverRequest::METHOD => |document, at, _| written(hover::hover(document, at)),
+            GotoDefinition::METHOD => |document, at, _| written(names::definition(document, at)),
+            References::METHOD => |document, at, params| {
                 let context = read::<ReferenceParams>(params)?.context;
                 written(names::references(document, at, context.include_declaration))
-            }
-            PrepareRenameRequest::METHOD => written(names::prepare(document, at)),
-            Rename::METHOD => {
+            },
+            PrepareRenameRequest::METHOD => |document, at, _| written(names::prepare(document, at)),
+            Rename::METHOD => |document, at, params| {
                 let new = read::<RenameParams>(params)?.new_name;
                 let edit = names::renamed(document, at, &new);
                 written(edit.map_err(|reason| (REQUEST_FAILED, reason.to_string()))?)
+            },
+            Completion::METHOD => |document, at, _| written(completion::completion(document, at)),
+            _ => {
+                let reason = format!("no method `{}`", shown(method));
+                return Err(refused(ErrorCode::MethodNotFound, reason));
             }
-            _ => written(completion::completion(document, at)),
-        }
+        };
+        let at: TextDocumentPositionParams = read(params.clone())?;
+        let document = self.documents.get(at.text_document.uri.as_str());
+        let document = document.filter(|document| document.is_spec());
+        document.map_or(Ok(Value::Null), |document| {
+            answer(document, at.position, params)
+        })
     }
 
     fn notification(&mut self, notification: Notification) {
@@ -216,8 +212,7 @@ impl Server {
     /// Takes a new text: publishes the findings of the parser and requests the derivation.
     fn open(&mut self, uri: Uri, version: i32, text: Text) {
         self.revision += 1;
-        let mut document = Document::new(uri.clone(), version, text);
-        document.revision = self.revision;
+        let mut document = Document::new(uri.clone(), version, self.revision, text);
         let key = uri.as_str().to_owned();
         let is_valid = document.is_spec() && document.reading.is_valid();
         if !is_valid && let Some(before) = self.documents.remove(&key) {
@@ -230,14 +225,11 @@ impl Server {
             Vec::new()
         };
         if is_valid {
-            let text = document.text.as_str().to_owned();
-            let uri = key.clone();
             // Without the worker only the findings of the parser appear.
-            let revision = self.revision;
             let _ = self.jobs.send(Job {
-                uri,
-                revision,
-                text,
+                uri: key.clone(),
+                revision: self.revision,
+                text: document.text.as_str().to_owned(),
             });
         }
         self.documents.insert(key, document);

@@ -37,21 +37,10 @@ fn write(messages: &Receiver<Message>, to: &Mutex<impl Write>) -> io::Result<()>
     Ok(())
 }
 
-/// Why a message is refused: code and reason, with the number of the request where it is known.
-struct Refusal {
-    code: ErrorCode,
-    reason: String,
-    id: Value,
-}
-
-impl Refusal {
-    fn new(code: ErrorCode, reason: impl Into<String>) -> Self {
-        Self {
-            code,
-            reason: reason.into(),
-            id: Value::Null,
-        }
-    }
+/// The answer that refuses a message, with the number of the request where it is known.
+fn refusal(code: ErrorCode, reason: &str, id: &Value) -> String {
+    let error = json!({ "code": code as i32, "message": reason });
+    json!({ "jsonrpc": "2.0", "id": id, "error": error }).to_string()
 }
 
 struct Reader<R, W> {
@@ -64,27 +53,20 @@ impl<R: BufRead, W: Write> Reader<R, W> {
     fn read(mut self, tell: &Sender<Message>) -> io::Result<()> {
         // One refusal for each run of malformed headers.
         let mut lost = false;
-        loop {
-            let refusal = match self.length()? {
-                None => return Ok(()),
-                Some(Ok(length)) => {
-                    lost = false;
-                    match self.message(length)? {
-                        Ok(message) => match tell.send(message) {
-                            Ok(()) => continue,
-                            Err(_) => return Ok(()),
-                        },
-                        Err(refusal) => refusal,
-                    }
-                }
-                Some(Err(_)) if lost => continue,
-                Some(Err(reason)) => {
-                    lost = true;
-                    Refusal::new(ErrorCode::ParseError, reason)
-                }
+        while let Some(length) = self.length()? {
+            let was_lost = std::mem::replace(&mut lost, length.is_err());
+            let message = match length {
+                Ok(length) => self.message(length)?,
+                Err(_) if was_lost => continue,
+                Err(reason) => Err(refusal(ErrorCode::ParseError, &reason, &Value::Null)),
             };
-            self.refuse(refusal)?;
+            match message.map(|message| tell.send(message)) {
+                Ok(Ok(())) => {}
+                Ok(Err(_)) => break,
+                Err(refusal) => self.refuse(&refusal)?,
+            }
         }
+        Ok(())
     }
 
     /// The length stated by the header; nothing at the end of the stream.
@@ -105,42 +87,39 @@ impl<R: BufRead, W: Write> Reader<R, W> {
                     "a message begins with the header `Content-Length`".to_owned()
                 })));
             }
-            let stated = line.split_once(':').filter(|(name, _)| {
-                let name = name.trim();
-                name.eq_ignore_ascii_case("Content-Length")
-            });
-            if let Some((_, stated)) = stated {
+            if let Some((name, stated)) = line.split_once(':')
+                && name.trim().eq_ignore_ascii_case("Content-Length")
+            {
                 length = stated.trim().parse().ok();
             }
         }
     }
 
     /// The message of this length. One beyond the limit is skipped.
-    fn message(&mut self, length: u64) -> io::Result<Result<Message, Refusal>> {
+    fn message(&mut self, length: u64) -> io::Result<Result<Message, String>> {
         let mut body = (&mut self.from).take(length);
         if length > LONGEST {
             io::copy(&mut body, &mut io::sink())?;
             let reason = format!("a message has at most {} MiB", LONGEST >> 20);
-            return Ok(Err(Refusal::new(ErrorCode::InvalidRequest, reason)));
+            let code = ErrorCode::InvalidRequest;
+            return Ok(Err(refusal(code, &reason, &Value::Null)));
         }
         let mut bytes = Vec::new();
         body.read_to_end(&mut bytes)?;
         Ok(message(&bytes))
     }
 
-    fn refuse(&self, refusal: Refusal) -> io::Result<()> {
-        let Refusal { code, reason, id } = refusal;
-        let error = json!({ "code": code as i32, "message": reason });
-        let text = json!({ "jsonrpc": "2.0", "id": id, "error": error }).to_string();
+    fn refuse(&self, text: &str) -> io::Result<()> {
         let mut to = self.to.lock().unwrap_or_else(PoisonError::into_inner);
         write!(to, "Content-Length: {}\r\n\r\n{text}", text.len())?;
         to.flush()
     }
 }
 
-fn message(bytes: &[u8]) -> Result<Message, Refusal> {
+/// A message, or the answer that refuses it.
+fn message(bytes: &[u8]) -> Result<Message, String> {
     let value: Value = serde_json::from_slice(bytes)
-        .map_err(|error| Refusal::new(ErrorCode::ParseError, error.to_string()))?;
+        .map_err(|error| refusal(ErrorCode::ParseError, &error.to_string(), &Value::Null))?;
     let id = value
         .get("id")
         .filter(|id| id.is_number() || id.is_string());
@@ -148,12 +127,9 @@ fn message(bytes: &[u8]) -> Result<Message, Refusal> {
     match serde_json::from_value(value) {
         // A notification with an identifier is a request whose identifier is invalid.
         Ok(message) if id.is_null() || !matches!(message, Message::Notification(_)) => Ok(message),
-        _ => Err(Refusal {
-            id,
-            ..Refusal::new(
-                ErrorCode::InvalidRequest,
-                "this is no request, notification or response",
-            )
-        }),
+        _ => {
+            let reason = "this is no request, notification or response";
+            Err(refusal(ErrorCode::InvalidRequest, reason, &id))
+        }
     }
 }

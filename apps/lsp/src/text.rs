@@ -52,14 +52,15 @@ impl Text {
         };
         let end = self.starts.get(line + 1).copied();
         let line = self.part(&(start..end.unwrap_or(self.whole.len())));
+        let line = line.trim_end_matches(['\r', '\n']);
         let mut units = position.character as usize;
-        for (at, letter) in line.trim_end_matches(['\r', '\n']).char_indices() {
+        for (at, letter) in line.char_indices() {
             if units < letter.len_utf16() {
                 return start + at;
             }
             units -= letter.len_utf16();
         }
-        start + line.trim_end_matches(['\r', '\n']).len()
+        start + line.len()
     }
 
     /// The text after an edit.

@@ -65,18 +65,10 @@ struct Written {
 }
 
 /// The parts of the page, for many readers.
+#[derive(Default)]
 pub(crate) struct Board {
     written: Mutex<Written>,
     news: watch::Sender<u64>,
-}
-
-impl Default for Board {
-    fn default() -> Self {
-        Self {
-            written: Mutex::default(),
-            news: watch::Sender::new(0),
-        }
-    }
 }
 
 impl Board {

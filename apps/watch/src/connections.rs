@@ -20,18 +20,7 @@ const MOST: usize = 128;
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// Whether a request on a connection has shown the secret.
-#[derive(Clone, Default)]
-pub(crate) struct Admitted(Arc<AtomicBool>);
-
-impl Admitted {
-    pub(crate) fn set(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
+pub(crate) type Admitted = Arc<AtomicBool>;
 
 struct Connection {
     task: AbortHandle,
@@ -48,14 +37,16 @@ pub(crate) async fn accept(listener: &TcpListener, routes: &Router) {
         };
         open.retain(|one: &Connection| !one.task.is_finished());
         if open.len() >= MOST {
-            let strangers = open.iter().position(|one| !one.admitted.is_set());
+            let strangers = open
+                .iter()
+                .position(|one| !one.admitted.load(Ordering::Relaxed));
             match strangers.and_then(|at| open.remove(at)) {
                 Some(oldest) => oldest.task.abort(),
                 None => continue,
             }
         }
         let admitted = Admitted::default();
-        let routes = routes.clone().layer(Extension(admitted.clone()));
+        let routes = routes.clone().layer(Extension(Arc::clone(&admitted)));
         let task = tokio::spawn(serve(stream, routes)).abort_handle();
         open.push_back(Connection { task, admitted });
     }

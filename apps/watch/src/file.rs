@@ -38,17 +38,14 @@ pub(crate) fn follow(path: &Path, texts: Inbox) -> std::io::Result<()> {
 fn watcher(path: &Path, tell: Sender<()>) -> Option<RecommendedWatcher> {
     let (folder, name) = (path.parent()?, path.file_name()?.to_owned());
     let told = move |event: notify::Result<notify::Event>| {
-        let concerns = event.as_ref().is_ok_and(|event| {
-            let is_it = |path: &std::path::PathBuf| path.file_name() == Some(&name);
+        let concerns = event.map_or(true, |event| {
             // Read access is no change, and each reload causes it.
-            let is_reading = match event.kind {
-                EventKind::Access(AccessKind::Close(AccessMode::Write)) => false,
-                EventKind::Access(_) => true,
-                _ => false,
-            };
-            !is_reading && (event.paths.is_empty() || event.paths.iter().any(is_it))
+            let written = AccessKind::Close(AccessMode::Write);
+            let is_reading = matches!(event.kind, EventKind::Access(kind) if kind != written);
+            let mut paths = event.paths.iter().map(|path| path.file_name());
+            !is_reading && (event.paths.is_empty() || paths.any(|own| own == Some(&name)))
         });
-        if concerns || event.is_err() {
+        if concerns {
             // Sending fails only after the server has ended.
             let _ = tell.send(());
         }

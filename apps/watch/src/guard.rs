@@ -9,8 +9,8 @@ const SECRET: usize = 24;
 /// The secret and the port that a request is checked against.
 #[derive(Clone)]
 pub(crate) struct Guard {
-    token: String,
-    port: u16,
+    pub(crate) token: String,
+    pub(crate) port: u16,
 }
 
 impl Guard {
@@ -22,14 +22,6 @@ impl Guard {
         let token = digits.filter_map(|digit| char::from_digit(digit.into(), 16));
         let token = token.collect();
         Ok(Self { token, port })
-    }
-
-    pub(crate) fn token(&self) -> &str {
-        &self.token
-    }
-
-    pub(crate) fn port(&self) -> u16 {
-        self.port
     }
 
     /// Rejects requests without the secret, and cross-site requests: their host or origin is a foreign name.

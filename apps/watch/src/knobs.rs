@@ -10,28 +10,22 @@ const WIDE: f64 = 2.0;
 pub(crate) fn knobs(info: &ModelInfo) -> Value {
     let declared = &info.inputs[..info.declared_inputs];
     json!({
-        "parameters": all(&info.parameters, Sign::Kept),
-        "initial": all(&info.states, Sign::Any),
-        "inputs": all(declared, Sign::Any),
+        // The derivation assumes the sign of a parameter unless its limits admit both.
+        "parameters": all(&info.parameters, true),
+        "initial": all(&info.states, false),
+        "inputs": all(declared, false),
     })
 }
 
-/// The derivation assumes the sign of a parameter unless its limits admit both.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Sign {
-    Kept,
-    Any,
+fn all(quantities: &[Quantity], keeps_sign: bool) -> Vec<Value> {
+    quantities.iter().map(|q| knob(q, keeps_sign)).collect()
 }
 
-fn all(quantities: &[Quantity], sign: Sign) -> Vec<Value> {
-    quantities.iter().map(|q| knob(q, sign)).collect()
-}
-
-fn knob(quantity: &Quantity, sign: Sign) -> Value {
+fn knob(quantity: &Quantity, keeps_sign: bool) -> Value {
     let unit = |si: f64| si / quantity.scale;
     let value = unit(quantity.value);
     let [least, most] = quantity.range.map(unit);
-    let [low, high] = reach(value, [least, most], &quantity.unit, sign);
+    let [low, high] = reach(value, [least, most], &quantity.unit, keeps_sign);
     let limit = |limit: f64| limit.is_finite().then_some(limit);
     json!({
         "name": quantity.name,
@@ -46,7 +40,7 @@ fn knob(quantity: &Quantity, sign: Sign) -> Value {
 }
 
 /// Range of a slider: the limits where they are finite.
-fn reach(value: f64, [least, most]: [f64; 2], unit: &str, sign: Sign) -> [f64; 2] {
+fn reach(value: f64, [least, most]: [f64; 2], unit: &str, keeps_sign: bool) -> [f64; 2] {
     let width = match unit {
         "rad" => std::f64::consts::PI,
         "deg" => 180.0,
@@ -54,23 +48,13 @@ fn reach(value: f64, [least, most]: [f64; 2], unit: &str, sign: Sign) -> [f64; 2
         _ => WIDE * value.abs(),
     };
     let width = width.max(value.abs());
-    let beyond = |other: bool| {
-        if sign == Sign::Kept && other {
-            0.0
-        } else {
-            width
-        }
+    let end = |limit: f64, side: f64, is_other_sign: bool| match limit {
+        limit if limit.is_finite() => limit,
+        _ if keeps_sign && is_other_sign => side * 0.0,
+        _ => side * width,
     };
-    let low = if least.is_finite() {
-        least
-    } else {
-        -beyond(value > 0.0)
-    };
-    let high = if most.is_finite() {
-        most
-    } else {
-        beyond(value < 0.0)
-    };
+    let low = end(least, -1.0, value > 0.0);
+    let high = end(most, 1.0, value < 0.0);
     // A limit may lie outside the range about the value.
     [low.min(value), high.max(value).max(low)]
 }
@@ -83,13 +67,13 @@ mod tests {
     #[test]
     fn a_slider_goes_to_the_limits_or_around_its_value() {
         let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-        let any = |value, limits, unit| reach(value, limits, unit, Sign::Any);
+        let any = |value, limits, unit| reach(value, limits, unit, false);
         assert_eq!(any(3.0, [0.0, f64::INFINITY], "kg"), [0.0, 6.0]);
         assert_eq!(any(0.2, [-1.5, 1.5], "rad"), [-1.5, 1.5]);
         assert_eq!(any(0.0, everywhere, "m/s"), [-10.0, 10.0]);
         assert_eq!(any(-200.0, everywhere, "deg"), [-200.0, 200.0]);
         assert_eq!(any(50.0, [f64::NEG_INFINITY, 20.0], "m"), [-100.0, 50.0]);
-        let kept = |value| reach(value, everywhere, "m", Sign::Kept);
+        let kept = |value| reach(value, everywhere, "m", true);
         assert_eq!(kept(2.0), [0.0, 4.0]);
         assert_eq!(kept(-2.0), [-4.0, 0.0]);
         assert_eq!(kept(0.0), [-10.0, 10.0]);

@@ -31,7 +31,8 @@ use std::sync::Arc;
 use board::Board;
 use guard::Guard;
 use motions::Motions;
-use worker::Inbox;
+use server::Shared;
+use tokio::sync::Semaphore;
 
 /// Why a page cannot be served.
 #[derive(Debug, thiserror::Error)]
@@ -56,10 +57,7 @@ pub enum Error {
 /// A server that is ready for a browser.
 pub struct Watch {
     listener: TcpListener,
-    guard: Guard,
-    board: Arc<Board>,
-    motions: Arc<Motions>,
-    inbox: Inbox,
+    shared: Shared,
 }
 
 impl Watch {
@@ -79,36 +77,29 @@ impl Watch {
         listener.set_nonblocking(true)?;
         let guard = Guard::new(listener.local_addr()?.port()).map_err(Error::Secret)?;
         let board = Arc::new(Board::default());
-        let motions = Motions::start(&board)?;
-        let inbox = worker::start(spec, &board)?;
-        file::follow(spec, inbox.clone())?;
-        Ok(Self {
-            listener,
+        let shared = Shared {
             guard,
+            motions: Motions::start(&board)?,
+            inbox: worker::start(spec, &board)?,
             board,
-            motions,
-            inbox,
-        })
+            windows: Arc::new(Semaphore::new(server::MOST_WINDOWS)),
+        };
+        file::follow(spec, shared.inbox.clone())?;
+        Ok(Self { listener, shared })
     }
 
     /// Where the server listens.
     pub fn address(&self) -> SocketAddr {
-        (Ipv4Addr::LOCALHOST, self.guard.port()).into()
+        (Ipv4Addr::LOCALHOST, self.shared.guard.port).into()
     }
 
     /// The address of the page, with the secret that grants access.
     pub fn url(&self) -> String {
-        format!("http://{}/{}/", self.address(), self.guard.token())
+        format!("http://{}/{}/", self.address(), self.shared.guard.token)
     }
 
     /// Serves the page until the process ends.
     pub fn serve(self) -> Result<(), Error> {
-        Ok(server::serve(
-            self.listener,
-            self.guard,
-            self.board,
-            self.motions,
-            self.inbox,
-        )?)
+        Ok(server::serve(self.listener, self.shared)?)
     }
 }

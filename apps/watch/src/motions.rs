@@ -122,9 +122,8 @@ impl Motions {
             let go_on = || start.elapsed() < PATIENCE && is_wanted();
             let moved = catch_unwind(AssertUnwindSafe(|| motion(board, &request, go_on)));
             let moved = moved.unwrap_or_else(|_| {
-                Err(Refusal::Wrong(
-                    "a mistake in appell: this motion cannot be computed".to_owned(),
-                ))
+                let reason = "a mistake in appell: this motion cannot be computed";
+                Err(Refusal::Wrong(reason.to_owned()))
             });
             if is_wanted() {
                 // Sending fails if the window was closed.
@@ -175,8 +174,8 @@ fn line(error: &appell::Error) -> String {
             format!("{} = {}: {}", error.name, error.text, told.join("; "))
         }
         appell::Error::Several(all) => {
-            let lines: Vec<String> = all.iter().map(line).collect();
-            lines.join("; ")
+            let lines = all.iter().map(line);
+            lines.collect::<Vec<String>>().join("; ")
         }
         other => {
             let text = other.to_string();
@@ -194,8 +193,7 @@ impl Request {
         }
         let count = self.parameters.len() + self.initial.len() + self.inputs.len();
         if count > MOST_VALUES {
-            let message = format!("more than {MOST_VALUES} values");
-            return Err(Refusal::Wrong(message));
+            return Err(Refusal::Wrong(format!("more than {MOST_VALUES} values")));
         }
         let whole = Motion::new(self.end);
         Ok(Motion {

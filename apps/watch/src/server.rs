@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 use std::net::TcpListener;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use appell_report::derivation::EQUATIONS;
@@ -34,7 +35,7 @@ const LARGEST: usize = 64 << 10;
 /// Timeout for receiving and for answering a request.
 const PATIENCE: Duration = Duration::from_secs(30);
 /// Limit on windows that follow the spec.
-const MOST_WINDOWS: usize = 32;
+pub(crate) const MOST_WINDOWS: usize = 32;
 
 const STYLE: &str = include_str!("page/style.css");
 const BODY: &str = include_str!("page/body.html");
@@ -55,30 +56,19 @@ const FRAME_POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; styl
                             base-uri 'none'; form-action 'none'; frame-ancestors 'self'; \
                             sandbox allow-scripts";
 
+/// What every request may need.
 #[derive(Clone)]
-struct Shared {
-    guard: Guard,
-    board: Arc<Board>,
-    motions: Arc<Motions>,
-    inbox: Inbox,
-    windows: Arc<Semaphore>,
+pub(crate) struct Shared {
+    pub(crate) guard: Guard,
+    pub(crate) board: Arc<Board>,
+    pub(crate) motions: Arc<Motions>,
+    pub(crate) inbox: Inbox,
+    /// Permits of windows that follow the spec.
+    pub(crate) windows: Arc<Semaphore>,
 }
 
 /// Serves until the process ends.
-pub(crate) fn serve(
-    listener: TcpListener,
-    guard: Guard,
-    board: Arc<Board>,
-    motions: Arc<Motions>,
-    inbox: Inbox,
-) -> std::io::Result<()> {
-    let shared = Shared {
-        guard,
-        board,
-        motions,
-        inbox,
-        windows: Arc::new(Semaphore::new(MOST_WINDOWS)),
-    };
+pub(crate) fn serve(listener: TcpListener, shared: Shared) -> std::io::Result<()> {
     let routes = Router::new()
         .route("/{token}/", get(page))
         .route("/{token}/style.css", get(style))
@@ -110,7 +100,7 @@ async fn guarded(
 ) -> Response {
     let checked = shared.guard.check(request.uri().path(), request.headers());
     if checked.is_ok() {
-        admitted.set();
+        admitted.store(true, Ordering::Relaxed);
     }
     let mut response = match checked {
         Err(status) => status.into_response(),

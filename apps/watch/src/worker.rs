@@ -62,14 +62,9 @@ pub(crate) fn start(spec: &Path, board: &Arc<Board>) -> std::io::Result<Inbox> {
     Ok(Inbox(send))
 }
 
-/// The last valid text, until its derivation has been written.
-struct Unread {
-    version: u64,
-    derived: Derived,
-}
-
 fn work(file: &str, messages: &Receiver<Message>, board: &Board) {
     let mut version = 0;
+    // The last valid text, until its derivation has been written.
     let mut unread = None;
     while let Ok(first) = messages.recv() {
         let mut newest = None;
@@ -83,27 +78,16 @@ fn work(file: &str, messages: &Receiver<Message>, board: &Board) {
                 Message::Derivation => wanted = true,
             }
         }
-        let job = |version| Job {
-            file,
-            version,
-            board,
-        };
         if let Some(text) = newest {
-            let job = job(version);
-            let derived = job.guarded(|| match &text {
-                Ok(text) => job.show(text),
-                Err(reason) => {
-                    job.refuse(reason);
-                    None
-                }
-            });
-            let derived = derived.flatten();
-            unread = derived
-                .map(|derived| Unread { version, derived })
-                .or(unread);
+            let job = Job {
+                file,
+                version,
+                board,
+            };
+            let derived = job.guarded(|| job.show(&text)).flatten();
+            unread = derived.map(|derived| (job, derived)).or(unread);
         }
-        if wanted && let Some(Unread { version, derived }) = unread.take() {
-            let job = job(version);
+        if wanted && let Some((job, derived)) = unread.take() {
             job.guarded(|| job.derivation(derived));
         }
     }
@@ -137,8 +121,15 @@ impl Job<'_> {
         done.ok()
     }
 
-    /// Shows a text; returns its derivation if there is one.
-    fn show(&self, text: &str) -> Option<Derived> {
+    /// Shows a text, or why there is none; returns its derivation if there is one.
+    fn show(&self, text: &Text) -> Option<Derived> {
+        let text = match text {
+            Ok(text) => text,
+            Err(reason) => {
+                self.refuse(reason);
+                return None;
+            }
+        };
         let items = Places::new(text).items();
         let shown = json!({ "file": self.file, "text": text, "items": items });
         self.write(Part::Text, shown);

@@ -17,6 +17,7 @@ use appell_codegen::mechanics::{Linear, Regressor};
 use appell_codegen::schedule::schedule;
 use appell_codegen::tape::{Tape, interpret_weighted};
 use appell_estimate::BaseParameters;
+use appell_estimate::inverse::Moment;
 use appell_recordings::DataSet;
 use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
@@ -102,18 +103,11 @@ pub fn structure(
     let mut rows = DMatrix::zeros(0, count);
     let mut values = Vec::new();
     for moment in moments::random(model, MOTIONS * count, p) {
-        let at = At {
-            t: moment.t,
-            x: &moment.x,
-            u: &moment.u,
-            p,
-        };
-        let linear = equations.at(at, &moment.accelerations);
+        let linear = equations.at(&moment, &moment.u, p);
         if linear.regressor.iter().all(|entry| entry.is_finite()) {
-            let before = rows.nrows();
-            rows = rows.insert_rows(before, linear.regressor.nrows(), 0.0);
-            rows.rows_mut(before, linear.regressor.nrows())
-                .copy_from(&linear.regressor);
+            let (before, more) = (rows.nrows(), linear.regressor.nrows());
+            rows = rows.insert_rows(before, more, 0.0);
+            rows.rows_mut(before, more).copy_from(&linear.regressor);
             values = linear.values;
         }
     }
@@ -131,10 +125,9 @@ pub fn structure(
             others,
         }
     });
-    let base = base.collect();
     Ok(Structure {
         parameters: regressor.parameters.clone(),
-        base,
+        base: base.collect(),
         values,
         without_effect: regressor.without_effect.clone(),
     })
@@ -184,14 +177,13 @@ impl Equations {
         }
     }
 
-    fn at(&self, at: At<'_>, accelerations: &[f64]) -> LinearEquations {
+    /// At a motion with other inputs.
+    fn at(&self, moment: &Moment, u: &[f64], p: &[f64]) -> LinearEquations {
+        let (t, x, accelerations) = (moment.t, &moment.x, &moment.accelerations);
+        let at = At { t, x, u, p };
         let (s, k) = (self.speeds, self.count);
         let (mut regressor, mut rest, mut values) = (vec![0.0; s * k], vec![0.0; s], vec![0.0; k]);
-        let results = [
-            regressor.as_mut_slice(),
-            rest.as_mut_slice(),
-            values.as_mut_slice(),
-        ];
+        let results = [&mut regressor[..], &mut rest, &mut values];
         if let Some(native) = &self.native {
             native.call_weighted(at, accelerations, results);
         } else {

@@ -6,13 +6,9 @@
 //! | `library.rs` | the effects that are shipped |
 //! | `effect.rs` | the file of an effect |
 //! | `site_kind.rs`, `site.rs` | kinds of sites with their placeholders; the sites in a mechanism |
-//! | `extent.rs` | the size of a body |
 //! | `load.rs` | loads that depend on the motion like a feedback controller |
 //! | `candidate.rs` | an effect at a site: names, items to add, parameters to estimate |
-//! | `memory.rs` | laws with a state of their own |
-//! | `hidden_mass.rs` | a mass coupled to a coordinate by a spring and a damper |
-//! | `hysteresis.rs` | a force that depends on the travel since the last reversal |
-//! | `stem.rs` | names and parameters of such a law |
+//! | `law.rs` | measured laws outside the library, some with a state of their own |
 //! | `drive.rs` | forces of inputs along a pseudo-velocity, and the inertia there |
 //! | `place.rs` | errors in the file of an effect, at their positions |
 //! | `model.rs` | a mechanism with many candidates, derived at once; equal to the mechanism at nominal values |
@@ -20,28 +16,22 @@
 mod candidate;
 mod drive;
 mod effect;
-mod extent;
-mod hidden_mass;
-mod hysteresis;
+mod law;
 mod library;
 mod load;
-mod memory;
 mod model;
 mod place;
 mod site;
 mod site_kind;
-mod stem;
 mod term;
 
 pub(crate) use candidate::Part;
 pub use candidate::{Acts, Candidate};
 pub(crate) use drive::Drive;
 pub use effect::{Effect, EffectError, Family};
-pub(crate) use hidden_mass::HiddenMass;
-pub(crate) use hysteresis::Hysteresis;
+pub(crate) use law::Memory;
 pub use library::shipped;
 pub(crate) use load::controlled;
-pub(crate) use memory::Memory;
 pub use model::{EffectModel, ModelError, candidates, with_candidates, written};
 pub use site::Scales;
 pub(crate) use site::driven;
@@ -70,20 +60,20 @@ mod tests {
     #[test]
     fn every_word_of_every_site_stands_in_the_manual() {
         let manual = manual();
-        for kind in SiteKind::all() {
-            let site = kind.word();
+        for kind in &site_kind::KINDS {
+            let site = kind.word;
             let cell = row(&manual, site).unwrap_or_default().to_owned();
             let base = ["coordinate", "body"]
                 .into_iter()
                 .filter(|base| cell.contains(&format!("those of `{base}`")))
                 .map(|base| row(&manual, base).unwrap_or_default());
             let cell = cell.clone() + &base.collect::<String>();
-            for word in kind.words().concat() {
+            for word in kind.words() {
                 let word = format!("{{{word}}}");
                 assert!(cell.contains(&word), "{site}: {word} is not in its row");
                 assert!(row(&manual, &word).is_some(), "{word} has no meaning");
             }
-            let known = kind.words().concat();
+            let known = kind.words();
             for word in cell.split('`').filter_map(|part| part.strip_prefix('{')) {
                 let word = word.trim_end_matches('}');
                 assert!(known.contains(&word), "{site} does not know {word}");

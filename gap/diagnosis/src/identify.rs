@@ -29,7 +29,7 @@ mod shooting;
 mod start;
 mod steps;
 
-use appell_estimate::{Estimation, Fit, Recording, Setup};
+use appell_estimate::{Estimation, Fit, Setup};
 use appell_runtime::model::Model;
 
 use appell_recordings::{DataSet, Part, Run};
@@ -99,40 +99,14 @@ pub fn identify(
     let estimation = Estimation::new(&setup, &recordings)?;
     stage("computing intervals and identifiable combinations");
     let mut answer = Answer::of(set, &estimation, &problem, &nominal, &fit)?;
-    let runs: Vec<&Run> = set
-        .runs
-        .iter()
+    let runs: Vec<&Run> = (set.runs.iter())
         .filter(|run| run.part == Part::Fit)
         .collect();
     if runs.len() > 1 {
         stage("fitting each run alone");
-        let names: Vec<String> = (problem.quantities.iter())
-            .map(|quantity| quantity.name.to_string())
-            .collect();
-        let each: Vec<(&str, &Recording)> = (runs.iter().zip(&recordings))
-            .map(|(run, recording)| (run.name.as_str(), recording))
-            .collect();
-
-        let widening = answer.parameters.iter();
-        let widening: Vec<f64> = widening
-            .map(|own| {
-                if own.std > 0.0 {
-                    own.wider_std() / own.std
-                } else {
-                    1.0
-                }
-            })
-            .collect();
-        let free = &problem.wanted;
-        answer.repeatability = repeatability::repeatability(
-            &setup,
-            &each,
-            free,
-            &names,
-            &widening,
-            &estimation,
-            &fit,
-        )?;
+        let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
+        answer.repeatability =
+            repeatability::repeatability(&names, &estimation, &problem, &fit, &answer.parameters)?;
     }
     answer.courses = drift::courses(&drifts, &estimation, &fit.values, &runs)?;
     stage("predicting the held-out runs");

@@ -116,17 +116,12 @@ pub fn find(set: &DataSet, model: &dyn Model, options: &Options) -> Result<Answe
     let info = model.info();
     let columns = coordinates(set);
     let sought = sought(set, model, &columns, options)?;
-    let runs: Vec<_> = set
-        .runs
-        .iter()
-        .filter(|run| run.part == Part::Fit)
-        .collect();
+    let runs = set.runs.iter().filter(|run| run.part == Part::Fit);
     let records: Vec<Record> = runs
-        .iter()
+        .clone()
         .map(|run| {
-            let values = columns
-                .iter()
-                .map(|(column, _)| DVector::from_column_slice(&run.values[*column]));
+            let values = columns.iter();
+            let values = values.map(|(column, _)| DVector::from_column_slice(&run.values[*column]));
             Record {
                 times: run.times.clone(),
                 values: DMatrix::from_columns(&values.collect::<Vec<_>>()),
@@ -134,28 +129,19 @@ pub fn find(set: &DataSet, model: &dyn Model, options: &Options) -> Result<Answe
         })
         .collect();
     let track = Track::of(&records)?;
-    let p: Vec<f64> = set
-        .parameters
-        .iter()
-        .map(|parameter| parameter.value)
-        .collect();
+    let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
     let measured: Vec<usize> = columns.iter().map(|(_, coordinate)| *coordinate).collect();
     let relations = Relations::new(model, &measured, &track.stretches[0].motions[0], &p)?;
     let count = relations.len();
     let consistency = Consistency::new(relations, track, p, sought)?;
-    let found = if consistency.sought().is_empty() {
-        None
-    } else {
-        Some(consistency.find()?)
-    };
-    let values = found
-        .as_ref()
-        .map_or_else(|| consistency.nominal(), |found| found.values.clone());
-    let normalised_square = if let Some(found) = &found {
-        found.normalised_square()
-    } else {
+    let (found, values, normalised_square) = if consistency.sought().is_empty() {
+        let values = consistency.nominal();
         let here = consistency.at(&values)?;
-        2.0 * here.cost / here.count.max(1) as f64
+        (None, values, 2.0 * here.cost / here.count.max(1) as f64)
+    } else {
+        let found = consistency.find()?;
+        let (values, square) = (found.values.clone(), found.normalised_square());
+        (Some(found), values, square)
     };
     let track = consistency.track();
     let std = |k: usize| track.noise[(k, k)].sqrt();
@@ -165,14 +151,16 @@ pub fn find(set: &DataSet, model: &dyn Model, options: &Options) -> Result<Answe
     };
     let estimates = consistency.sought().iter().enumerate().filter_map(estimate);
     let estimates = estimates.collect::<Result<_, InverseError>>()?;
-    let inputs = runs.iter().enumerate().map(|(number, run)| {
-        let (times, values, stds) = inputs(&consistency, &values, found.as_ref(), number)?;
-        Ok(Inputs {
+    let inputs = runs.enumerate().map(|(number, run)| {
+        let none = vec![Vec::new(); info.declared_inputs];
+        let mut inputs = Inputs {
             run: run.name.clone(),
-            times,
-            values,
-            stds,
-        })
+            times: Vec::new(),
+            values: none.clone(),
+            stds: none,
+        };
+        inputs.add(&consistency, &values, found.as_ref(), number)?;
+        Ok(inputs)
     });
     Ok(Answer {
         estimates,
@@ -208,22 +196,21 @@ fn sought(
     options: &Options,
 ) -> Result<Vec<Sought>, RelationError> {
     let info = model.info();
-    let parameter = |name: &String| {
-        let index = info.parameter_index(name).map(Sought::Parameter);
+    let name = |(column, _): &(usize, usize)| set.channels[*column].column.as_str();
+    let parameter = |wanted: &String| {
+        let index = info.parameter_index(wanted).map(Sought::Parameter);
         index.ok_or_else(|| RelationError::UnknownParameter {
-            name: name.clone(),
+            name: wanted.clone(),
             known: listed(info.parameters.iter().map(|own| own.name.as_ref())),
         })
     };
-    let name = |(column, _): &(usize, usize)| set.channels[*column].column.as_str();
     let bias = |wanted: &String| {
         let place = columns.iter().position(|own| name(own) == wanted);
-        place
-            .map(Sought::Bias)
-            .ok_or_else(|| RelationError::UnknownColumn {
-                name: wanted.clone(),
-                known: listed(columns.iter().map(name)),
-            })
+        let place = place.map(Sought::Bias);
+        place.ok_or_else(|| RelationError::UnknownColumn {
+            name: wanted.clone(),
+            known: listed(columns.iter().map(name)),
+        })
     };
     let parameters = options.free.iter().map(parameter);
     parameters.chain(options.biased.iter().map(bias)).collect()
@@ -276,47 +263,42 @@ fn estimate(
     })
 }
 
-/// Times, values and standard deviations of the inputs.
-type Band = (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<f64>>);
-
-/// The inputs of a run with their band: noise of the motion, and uncertainty of the values.
-fn inputs(
-    consistency: &Consistency<'_>,
-    values: &DVector<f64>,
-    found: Option<&Found>,
-    run: usize,
-) -> Result<Band, InverseError> {
-    let relations = consistency.relations();
-    let count = relations.model().info().declared_inputs;
-    let (mut times, mut means, mut stds) =
-        (Vec::new(), vec![Vec::new(); count], vec![Vec::new(); count]);
-    let p = consistency.parameters(values);
-    let stretches = consistency.track().stretches.iter();
-    for stretch in stretches.filter(|stretch| stretch.run == run) {
-        for (place, motion) in stretch.motions.iter().enumerate() {
-            let spread = consistency.track().spread(stretch, place);
-            let at = |values: &DVector<f64>| {
-                let motion = consistency.corrected(motion, values);
-                relations.inputs(&motion, &consistency.parameters(values), &spread)
-            };
-            let (mean, mut covariance) =
-                relations.inputs(&consistency.corrected(motion, values), &p, &spread)?;
-            if let Some(found) = found {
-                let mut slopes = DMatrix::zeros(count, values.len());
-                for index in 0..values.len() {
-                    let std = found.covariance[(index, index)].sqrt();
-                    let mut varied = values.clone();
-                    varied[index] += std;
-                    slopes.set_column(index, &((at(&varied)?.0 - &mean) / std));
+impl Inputs {
+    /// Adds the inputs of a run with their band: noise of the motion, and uncertainty of the values.
+    fn add(
+        &mut self,
+        consistency: &Consistency<'_>,
+        values: &DVector<f64>,
+        found: Option<&Found>,
+        run: usize,
+    ) -> Result<(), InverseError> {
+        let (relations, track) = (consistency.relations(), consistency.track());
+        let stretches = track.stretches.iter();
+        for stretch in stretches.filter(|stretch| stretch.run == run) {
+            for (place, motion) in stretch.motions.iter().enumerate() {
+                let spread = track.spread(stretch, place);
+                let at = |values: &DVector<f64>| {
+                    let motion = consistency.corrected(motion, values);
+                    relations.inputs(&motion, &consistency.parameters(values), &spread)
+                };
+                let (mean, mut covariance) = at(values)?;
+                if let Some(found) = found {
+                    let mut slopes = DMatrix::zeros(mean.len(), values.len());
+                    for index in 0..values.len() {
+                        let std = found.covariance[(index, index)].sqrt();
+                        let mut varied = values.clone();
+                        varied[index] += std;
+                        slopes.set_column(index, &((at(&varied)?.0 - &mean) / std));
+                    }
+                    covariance += &slopes * &found.covariance * slopes.transpose();
                 }
-                covariance += &slopes * &found.covariance * slopes.transpose();
-            }
-            times.push(motion.t);
-            for input in 0..count {
-                means[input].push(mean[input]);
-                stds[input].push(covariance[(input, input)].sqrt());
+                self.times.push(motion.t);
+                for (input, values) in self.values.iter_mut().enumerate() {
+                    values.push(mean[input]);
+                    self.stds[input].push(covariance[(input, input)].sqrt());
+                }
             }
         }
+        Ok(())
     }
-    Ok((times, means, stds))
 }

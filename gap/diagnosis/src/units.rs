@@ -5,7 +5,7 @@ mod balance;
 
 use appell_recordings::{Channel, DataSet, Measured, Role};
 use appell_runtime::model::Model;
-use appell_spec::units::{self, Unit};
+use appell_spec::units;
 
 use appell_estimate::in_parallel;
 use balance::Balance;
@@ -71,8 +71,7 @@ struct Rival {
 /// The channels whose units or signs the training runs contradict.
 pub fn doubts(set: &DataSet, model: &dyn Model) -> Vec<Doubt> {
     let balance = Balance::new(set, model);
-    let plain = vec![1.0; set.channels.len()];
-    let stated = balance.missed(&plain);
+    let stated = balance.missed(&vec![1.0; set.channels.len()]);
     let units = unit_doubts(set, &balance, &stated);
     if units.is_empty() {
         sign_doubts(set, &balance, &stated)
@@ -81,96 +80,96 @@ pub fn doubts(set: &DataSet, model: &dyn Model) -> Vec<Doubt> {
     }
 }
 
-/// Channels that fit the equations in another unit.
-fn unit_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> Vec<Doubt> {
-    let plain = vec![1.0; set.channels.len()];
-    if !stated.iter().flatten().any(|part| *part > BROKEN) {
-        return Vec::new();
-    }
-    let with = |readings: &[Reading], by: f64| {
-        let mut factors = plain.clone();
+impl Balance<'_> {
+    /// The residuals of other readings, with all of their factors times another one.
+    fn read(&self, readings: &[Reading], by: f64) -> Vec<Option<f64>> {
+        let mut factors = vec![1.0; self.set.channels.len()];
         for reading in readings {
             factors[reading.channel] = by * reading.factor;
         }
-        balance.missed(&factors)
-    };
+        self.missed(&factors)
+    }
+}
+
+/// The best of some rivals, and those that are nearly as good.
+fn best(rivals: Vec<Option<Rival>>) -> Option<(Rival, Vec<Rival>)> {
+    let mut rivals: Vec<Rival> = rivals.into_iter().flatten().collect();
+    rivals.sort_by(|a, b| a.score.total_cmp(&b.score));
+    let mut rivals = rivals.into_iter();
+    let best = rivals.next()?;
+    let tied = rivals.take_while(|other| other.score < best.score + DECIDES);
+    let tied = tied.collect();
+    Some((best, tied))
+}
+
+/// Channels that fit the equations in another unit.
+fn unit_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> Vec<Doubt> {
+    if !stated.iter().flatten().any(|part| *part > BROKEN) {
+        return Vec::new();
+    }
     let rival = |readings: Vec<Reading>| {
-        let missed = with(&readings, 1.0);
-        let mended = mended(stated, &missed)?;
-        let varying: Vec<usize> = (mended.iter().copied())
-            .filter(|index| *index < balance.varying())
-            .collect();
+        let missed = balance.read(&readings, 1.0);
+        let mut varying = mended(stated, &missed)?;
+        varying.retain(|index| *index < balance.varying());
         let least = readings
             .iter()
             .map(|own| own.factor.max(1.0 / own.factor))
             .fold(f64::INFINITY, f64::min);
         let near = if least < MODEST { 1.08 } else { 1.3 };
         // The residual has its minimum at the factor of the unit.
-        let at = score(&missed, &varying);
+        let of = |missed: &[Option<f64>]| score(varying.iter().map(|index| missed[*index]));
+        let at = of(&missed);
         let is_best = varying.is_empty()
             || [near, 1.0 / near]
                 .iter()
-                .all(|by| score(&with(&readings, *by), &varying) > at);
-        let all: Vec<usize> = (0..missed.len()).collect();
-        let score = score(&missed, &all);
+                .all(|by| of(&balance.read(&readings, *by)) > at);
+        let score = score(missed.into_iter());
         is_best.then_some(Rival { readings, score })
     };
-    let rivals = in_parallel(readings(set), rival);
-    let mut rivals: Vec<Rival> = rivals.into_iter().flatten().collect();
-    rivals.sort_by(|a, b| a.score.total_cmp(&b.score));
-    let Some(best) = rivals.first() else {
+    let Some((best, tied)) = best(in_parallel(readings(set), rival)) else {
         return Vec::new();
     };
-    let tied = rivals[1..]
-        .iter()
-        .find(|other| other.score < best.score + DECIDES);
-    best.readings
-        .iter()
-        .map(|reading| doubt(set, reading, tied))
+    let readings = best.readings.iter();
+    readings
+        .map(|reading| doubt(set, reading, tied.first()))
         .collect()
 }
 
 /// Channels consistent with the equations only with reversed sign, such as a sensor axis mounted backwards. Signs that
 /// are undetermined by a mirror symmetry are not reported.
 fn sign_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> Vec<Doubt> {
-    let all: Vec<usize> = (0..stated.len()).collect();
+    let most = score(stated.iter().copied()) - REVERSED;
     let reversed = |channels: Vec<usize>| {
-        let mut factors = vec![1.0; set.channels.len()];
-        for &channel in &channels {
-            factors[channel] = -1.0;
-        }
-        let missed = balance.missed(&factors);
-        (score(&missed, &all), channels)
+        let reversed = |channel| Reading {
+            channel,
+            unit: String::new(),
+            factor: -1.0,
+        };
+        let readings: Vec<Reading> = channels.into_iter().map(reversed).collect();
+        let score = score(balance.read(&readings, 1.0).into_iter());
+        (score < most).then_some(Rival { readings, score })
     };
-    let most = score(stated, &all) - REVERSED;
-    let mut rivals = in_parallel(axes(set), reversed);
-    rivals.retain(|(score, _)| *score < most);
-    rivals.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((best, channels)) = rivals.first() else {
+    let Some((best, tied)) = best(in_parallel(axes(set), reversed)) else {
         return Vec::new();
     };
-    let others = rivals[1..].iter();
-    let others = others.take_while(|(score, _)| *score < best + DECIDES);
-    let others: Vec<String> = others
-        .map(|(_, channels)| format!(", or that of {}", named(set, channels)))
-        .collect();
-    let column = &set.channels[channels[0]].column;
+    let others = tied.iter();
+    let others = others.map(|other| format!(", or that of {}", named(set, other)));
     let message = format!(
         "the motion fits the equations better with the sign of {} reversed{}, unless an effect is missing: write \
          reversed = true in its line of [channels], or vouch for the sign with reversed = false",
-        named(set, channels),
-        others.concat()
+        named(set, &best),
+        others.collect::<String>()
     );
     vec![Doubt {
-        column: column.clone(),
+        column: set.channels[best.readings[0].channel].column.clone(),
         message,
         is_sign: true,
     }]
 }
 
-fn named(set: &DataSet, channels: &[usize]) -> String {
-    let names = channels.iter();
-    let names = names.map(|&channel| format!("`{}`", set.channels[channel].column));
+fn named(set: &DataSet, rival: &Rival) -> String {
+    let names = rival.readings.iter();
+    let names = names.map(|own| format!("`{}`", set.channels[own.channel].column));
     names.collect::<Vec<_>>().join(" and ")
 }
 
@@ -218,24 +217,24 @@ fn mended(stated: &[Option<f64>], read: &[Option<f64>]) -> Option<Vec<usize>> {
 }
 
 /// Sum of the logarithms of relative residuals.
-fn score(missed: &[Option<f64>], of: &[usize]) -> f64 {
-    let parts = of.iter().filter_map(|index| missed[*index]);
+fn score(missed: impl Iterator<Item = Option<f64>>) -> f64 {
+    let parts = missed.flatten();
     parts.map(|part| part.clamp(0.01, 100.0).ln()).sum()
 }
 
 /// Channels in other units: each alone, and all channels of one system of units.
 fn readings(set: &DataSet) -> Vec<Vec<Reading>> {
-    let channels = || set.channels.iter().enumerate();
-    let mut all: Vec<Vec<Reading>> = channels()
-        .flat_map(|(index, channel)| others(index, channel, set))
-        .map(|reading| vec![reading])
+    let others: Vec<Vec<Reading>> = (set.channels.iter().enumerate())
+        .map(|(index, channel)| others(index, channel, set))
         .collect();
+    let alone = others.iter().flatten();
+    let mut all: Vec<Vec<Reading>> = alone.map(|reading| vec![reading.clone()]).collect();
     for system in SYSTEMS {
-        let own = channels().filter_map(|(index, channel)| {
-            let mut others = others(index, channel, set).into_iter();
+        let own = others.iter().filter_map(|others| {
+            let mut others = others.iter();
             others.find(|reading| system.contains(&&*reading.unit))
         });
-        let own: Vec<Reading> = own.collect();
+        let own: Vec<Reading> = own.cloned().collect();
         if own.len() > 1 {
             all.push(own);
         }
@@ -250,22 +249,19 @@ fn others(index: usize, channel: &Channel, set: &DataSet) -> Vec<Reading> {
         return Vec::new();
     }
     let has_angle = channel.unit.has_angle() || label.is_some_and(|label| label.unit.has_angle());
-    let own: &Unit = &channel.unit;
+    let own = &channel.unit;
     let known = UNITS.iter().filter_map(|text| units::parse(text).ok());
-    let alike = known.filter(|unit| {
-        let is_angle = unit.has_angle();
-        unit.dimension == own.dimension && is_angle == has_angle
-    });
+    let alike =
+        known.filter(|unit| unit.dimension == own.dimension && unit.has_angle() == has_angle);
     let alike = alike.map(|unit| (unit.scale / own.scale, unit.text));
     let is_acceleration = units::parse("m/s^2").is_ok_and(|unit| unit.dimension == own.dimension);
     let gravity = is_acceleration.then(|| (GRAVITY / own.scale, "standard gravity".to_owned()));
-    let far = |(factor, _): &(f64, String)| factor.max(1.0 / factor) > LEAST;
     // The gain of an actuator is often off by a small factor.
     let is_input = matches!(channel.role, Role::Input(_));
+    let least = if is_input { MODEST } else { LEAST };
     alike
         .chain(gravity)
-        .filter(far)
-        .filter(|(factor, _)| !is_input || factor.max(1.0 / factor) > MODEST)
+        .filter(|(factor, _)| factor.max(1.0 / factor) > least)
         .map(|(factor, unit)| Reading {
             channel: index,
             unit,
@@ -278,20 +274,15 @@ fn others(index: usize, channel: &Channel, set: &DataSet) -> Vec<Reading> {
 fn doubt(set: &DataSet, reading: &Reading, tied: Option<&Rival>) -> Doubt {
     let channel = &set.channels[reading.channel];
     let (own, other) = (&channel.unit.text, &reading.unit);
-    let mut values = set
-        .runs
-        .iter()
-        .flat_map(|run| &run.values[reading.channel])
-        .filter(|value| !value.is_nan());
-    let largest = values
-        .try_fold(0.0, |most: f64, value| Some(most.max(value.abs())))
-        .unwrap_or(0.0);
+    let values = set.runs.iter().flat_map(|run| &run.values[reading.channel]);
+    // A missing value is no maximum.
+    let largest = values.fold(0.0, |most: f64, value| most.max(value.abs()));
     let largest = channel.unit.from_si(largest);
-    let place = channel.unit_at.as_ref();
-    let place = place.map(|(file, line, column)| format!("{file}:{line}:{column}"));
-    let write = match &place {
+    let write = match &channel.unit_at {
         _ if units::parse(other).is_err() => format!("convert the column with 1 = {GRAVITY} m/s^2"),
-        Some(place) => format!("write unit = \"{other}\" at {place}"),
+        Some((file, line, column)) => {
+            format!("write unit = \"{other}\" at {file}:{line}:{column}")
+        }
         None => format!("describe the column in a recording.toml with unit = \"{other}\""),
     };
     let tied = tied.map(|rival| {

@@ -19,6 +19,7 @@ use appell_estimate::{HALF_WIDTH_95, in_parallel};
 use appell_recordings::Part;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use super::LinearEquations;
 use super::error::BaseError;
 use super::moments::{Recorded, Stretch};
 
@@ -41,13 +42,8 @@ const ZERO: f64 = 1e-12;
 const BLOCK_S: f64 = 1.0;
 const FEWEST_BLOCKS: f64 = 10.0;
 
-/// The equations of a motion, by all of its columns.
-pub(super) struct Equation {
-    pub(super) base: DMatrix<f64>,
-    pub(super) rest: DVector<f64>,
-}
-
-pub(super) type Equations<'e> = &'e (dyn Fn(&Motion) -> Result<Equation, BaseError> + Sync);
+/// The equations of a motion, by all of its columns, with the base parameters alone.
+pub(super) type Equations<'e> = &'e (dyn Fn(&Motion) -> Result<LinearEquations, BaseError> + Sync);
 
 /// Adjusted parameters.
 pub(super) struct Adjusted {
@@ -114,7 +110,9 @@ pub(super) fn adjust(
                 update_levels(&mut levels, &whitened, &solved.change);
             }
         }
-        let multipliers = multipliers(&whitened, &solved.change);
+        let multipliers: Vec<DVector<f64>> = (whitened.iter())
+            .map(|own| own.multipliers(&solved.change))
+            .collect();
         for ((piece, linear), lambda) in pieces.iter_mut().zip(&linear).zip(&multipliers) {
             piece.adjust(linear, lambda, speeds);
         }
@@ -172,8 +170,8 @@ fn linearise(
 ) -> Result<Linear, BaseError> {
     let e = |motion: &Motion| {
         let own = equations(motion)?;
-        let e = &own.base * values + &own.rest;
-        Ok::<_, BaseError>((own.base, e))
+        let e = &own.regressor * values + &own.rest;
+        Ok::<_, BaseError>((own.regressor, e))
     };
     let columns = noise.nrows();
     let (mut bases, mut w, mut jacobians) = (Vec::new(), Vec::new(), Vec::new());
@@ -200,15 +198,11 @@ fn linearise(
             own += &*by * (&recorded.derivatives[order] - &motion.derivatives[order]);
         }
         bases.push(base);
-        w.push(own);
+        w.extend_from_slice(own.as_slice());
         jacobians.push(by);
     }
-    let is_finite = w
-        .iter()
-        .chain(w.iter())
-        .flatten()
-        .all(|entry: &f64| entry.is_finite());
-    if !is_finite {
+    let w = DVector::from_vec(w);
+    if !w.iter().all(|entry| entry.is_finite()) {
         return Err(BaseError::NotFinite);
     }
     let spread: Vec<[DMatrix<f64>; 3]> = (jacobians.iter())
@@ -216,11 +210,7 @@ fn linearise(
         .collect();
     Ok(Linear {
         base: stacked(&bases),
-        w: DVector::from_iterator(
-            w.iter().map(DVector::len).sum(),
-            w.into_iter()
-                .flat_map(|own| own.iter().copied().collect::<Vec<_>>()),
-        ),
+        w,
         v: piece.covariance(&jacobians, &spread),
         noise: spread,
     })
@@ -236,6 +226,14 @@ fn stacked(blocks: &[DMatrix<f64>]) -> DMatrix<f64> {
 }
 
 impl Piece<'_> {
+    /// From the first motion to the last in s.
+    fn length(&self) -> f64 {
+        match &self.motions[..] {
+            [first, .., last] => last.t - first.t,
+            _ => 0.0,
+        }
+    }
+
     /// J C Jᵀ.
     fn covariance(
         &self,
@@ -380,25 +378,20 @@ fn first_levels(linear: &[Linear], change: &DVector<f64>, speeds: usize) -> DVec
 /// τ² by the squares of λ over their expectation, the diagonal of V⁻¹.
 fn update_levels(levels: &mut DVector<f64>, whitened: &[Whitened], change: &DVector<f64>) {
     let speeds = levels.len();
-    let ratios = in_parallel(whitened, |own: &Whitened| {
+    // A column of the squares, and one of their expectations.
+    let parts = in_parallel(whitened, |own: &Whitened| {
         let lambda = own.multipliers(change);
         let inverse = own.cholesky.inverse();
-        let mut found: DVector<f64> = DVector::zeros(speeds);
-        let mut expected = found.clone();
+        let mut sums = DMatrix::zeros(speeds, 2);
         for row in 0..lambda.len() {
-            found[row % speeds] += lambda[row] * lambda[row];
-            expected[row % speeds] += inverse[(row, row)];
+            sums[(row % speeds, 0)] += lambda[row] * lambda[row];
+            sums[(row % speeds, 1)] += inverse[(row, row)];
         }
-        (found, expected)
+        sums
     });
-    let mut found: DVector<f64> = DVector::zeros(speeds);
-    let mut expected = found.clone();
-    for (own, of) in &ratios {
-        found += own;
-        expected += of;
-    }
-    for (level, (found, expected)) in levels.iter_mut().zip(found.iter().zip(expected.iter())) {
-        *level *= found / f64::max(*expected, f64::MIN_POSITIVE);
+    let sums: DMatrix<f64> = (parts.iter()).fold(DMatrix::zeros(speeds, 2), |sum, own| sum + own);
+    for (level, sums) in levels.iter_mut().zip(sums.row_iter()) {
+        *level *= sums[0] / sums[1].max(f64::MIN_POSITIVE);
     }
 }
 
@@ -409,10 +402,6 @@ impl Whitened {
         let lower = self.cholesky.l_dirty();
         lower.tr_solve_lower_triangular(&left).unwrap_or(left)
     }
-}
-
-fn multipliers(whitened: &[Whitened], change: &DVector<f64>) -> Vec<DVector<f64>> {
-    whitened.iter().map(|own| own.multipliers(change)).collect()
 }
 
 impl Adjusted {
@@ -463,16 +452,6 @@ impl Adjusted {
             values: values.clone(),
             deviations: DVector::from_fn(count, |i, _| deviation(i)),
             condition: solved.condition,
-        }
-    }
-}
-
-impl Piece<'_> {
-    /// From the first motion to the last in s.
-    fn length(&self) -> f64 {
-        match &self.motions[..] {
-            [first, .., last] => last.t - first.t,
-            _ => 0.0,
         }
     }
 }

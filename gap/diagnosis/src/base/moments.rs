@@ -37,12 +37,8 @@ pub(super) fn random(model: &dyn Model, count: usize, p: &[f64]) -> Vec<Moment> 
             let [low, high] = q.range;
             (low.max(q.value - PI), high.min(q.value + PI))
         };
-        let ranges: Vec<_> = info
-            .coordinate_quantities()
-            .iter()
-            .map(coordinate)
-            .collect();
-        x.extend(ranges.iter().map(|&(low, high)| between(low, high)));
+        let ranges = info.coordinate_quantities().iter().map(coordinate);
+        x.extend(ranges.map(|(low, high)| between(low, high)));
         let accelerations = (0..info.speeds).map(|_| between(-ACCELERATION, ACCELERATION));
         let accelerations: Vec<f64> = accelerations.collect();
         let u: Vec<f64> = (0..info.input_len())
@@ -88,39 +84,22 @@ pub(crate) struct Recorded<'a> {
     pub(crate) stretches: Vec<Stretch>,
     /// Covariance of the samples of the training runs.
     pub(super) noise: DMatrix<f64>,
-    pub(super) mechanics: Mechanics<'a>,
+    pub(super) relations: Relations<'a>,
 }
 
-/// States of motions.
-pub(super) struct Mechanics<'a> {
-    relations: Relations<'a>,
-    p: Vec<f64>,
-}
-
-impl<'a> Mechanics<'a> {
-    fn new(
-        model: &'a dyn Model,
-        measured: &[usize],
-        first: &Motion,
-        p: &[f64],
-    ) -> Result<Self, InverseError> {
-        let first = coordinates_of(first, measured.len());
-        let relations = Relations::new(model, measured, &first, p)?;
-        let p = p.to_vec();
-        Ok(Self { relations, p })
+/// State, accelerations and recorded inputs of a motion.
+pub(super) fn moment(
+    relations: &Relations<'_>,
+    motion: &Motion,
+    p: &[f64],
+) -> Result<Moment, InverseError> {
+    let count = relations.measured().len();
+    let mut moment = relations.moment(&coordinates_of(motion, count), p)?;
+    let given = motion.derivatives[0].iter().skip(count);
+    for (u, given) in moment.u.iter_mut().zip(given) {
+        *u = *given;
     }
-
-    /// State, accelerations and recorded inputs of a motion.
-    pub(super) fn moment(&self, motion: &Motion) -> Result<Moment, InverseError> {
-        let count = self.relations.measured().len();
-        let own = coordinates_of(motion, count);
-        let mut moment = self.relations.moment(&own, &self.p)?;
-        let given = motion.derivatives[0].iter().skip(count);
-        for (u, given) in moment.u.iter_mut().zip(given) {
-            *u = *given;
-        }
-        Ok(moment)
-    }
+    Ok(moment)
 }
 
 /// The recorded motions.
@@ -131,23 +110,22 @@ pub(crate) fn recorded<'a>(
 ) -> Result<Recorded<'a>, BaseError> {
     let info = model.info();
     let columns = coordinates(set);
-    let mut inputs = Vec::with_capacity(info.declared_inputs);
-    for input in 0..info.declared_inputs {
-        let is_own = |role: Role| role == Role::Input(input);
-        let place = set.channels.iter().position(|channel| is_own(channel.role));
-        inputs.push(place.ok_or_else(|| BaseError::NoInput {
+    let inputs = (0..info.declared_inputs).map(|input| {
+        let mut channels = set.channels.iter();
+        let place = channels.position(|channel| channel.role == Role::Input(input));
+        place.ok_or_else(|| BaseError::NoInput {
             input: info.inputs[input].name.to_string(),
-        })?);
-    }
+        })
+    });
+    let inputs: Vec<usize> = inputs.collect::<Result<_, _>>()?;
     let measured: Vec<usize> = columns.iter().map(|(_, coordinate)| *coordinate).collect();
     let mut stretches = Vec::new();
     let mut training = None;
     for part in [Part::Fit, Part::Test] {
         let runs = set.runs.iter().filter(|run| run.part == part);
         let record = |run: &Run| {
-            let coordinates = columns
-                .iter()
-                .map(|(column, _)| run.values[*column].clone());
+            let coordinates = columns.iter();
+            let coordinates = coordinates.map(|(column, _)| run.values[*column].clone());
             let inputs = inputs.iter().map(|&column| {
                 let values = &run.values[column];
                 if set.channels[column].is_joined() {
@@ -167,10 +145,11 @@ pub(crate) fn recorded<'a>(
             continue;
         }
         let track = Track::beside(&records, inputs.len())?;
-        let mechanics = Mechanics::new(model, &measured, &track.stretches[0].motions[0], p)?;
+        let first = coordinates_of(&track.stretches[0].motions[0], measured.len());
+        let relations = Relations::new(model, &measured, &first, p)?;
         for stretch in &track.stretches {
             let moments = stretch.motions.iter();
-            let moments = moments.map(|motion| Ok(mechanics.moment(motion)?));
+            let moments = moments.map(|motion| Ok(moment(&relations, motion, p)?));
             stretches.push(Stretch {
                 part,
                 run: stretch.run,
@@ -183,23 +162,21 @@ pub(crate) fn recorded<'a>(
                 shares: stretch.spread.clone(),
             });
         }
-        training.get_or_insert((track.noise, mechanics));
+        training.get_or_insert((track.noise, relations));
     }
-    let (noise, mechanics) = training.ok_or(InverseError::TooShort)?;
+    let (noise, relations) = training.ok_or(InverseError::TooShort)?;
     Ok(Recorded {
         stretches,
         noise,
-        mechanics,
+        relations,
     })
 }
 
 /// An input that is held from row to row, about each of them: its mean over half a row before and after.
 fn about_rows(values: &[f64]) -> Vec<f64> {
     let before = values.iter().take(1).chain(values);
-    let pairs = before.zip(values);
-    pairs
-        .map(|(before, after)| 0.5 * (before + after))
-        .collect()
+    let means = before.zip(values).map(|(a, b)| 0.5 * (a + b));
+    means.collect()
 }
 
 /// A motion with its coordinates alone.

@@ -3,15 +3,15 @@
 use appell_estimate::HALF_WIDTH_95;
 use appell_estimate::inverse::Motion;
 use appell_recordings::Part;
-use appell_runtime::model::{At, Model};
+use appell_runtime::model::Model;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use super::adjustment::{Equation, adjust};
+use super::adjustment::adjust;
 use super::error::BaseError;
-use super::moments::{Recorded, Stretch};
+use super::moments::{Recorded, Stretch, moment};
 
-use super::{Equations, Structure};
+use super::{Equations, LinearEquations, Structure};
 
 /// The estimate of a base parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,17 +81,11 @@ pub(super) fn fit(
     let speeds = model.info().speeds;
     let leading: Vec<usize> = structure.base.iter().map(|base| base.leading).collect();
     let equation = |motion: &Motion| {
-        let moment = recorded.mechanics.moment(motion)?;
-        let at = At {
-            t: moment.t,
-            x: &moment.x,
-            u: &moment.u,
-            p,
-        };
-        let linear = equations.at(at, &moment.accelerations);
-        Ok(Equation {
-            base: linear.regressor.select_columns(&leading),
-            rest: linear.rest,
+        let moment = moment(&recorded.relations, motion, p)?;
+        let linear = equations.at(&moment, &moment.u, p);
+        Ok(LinearEquations {
+            regressor: linear.regressor.select_columns(&leading),
+            ..linear
         })
     };
     let start = DVector::from_iterator(leading.len(), structure.base.iter().map(|own| own.nominal));
@@ -111,14 +105,10 @@ pub(super) fn fit(
         std,
         interval95: [-1.0, 1.0].map(|side| value + side * HALF_WIDTH_95 * std),
     });
-    let residuals = |rows: &[&Rows]| match rows {
-        [] => Vec::new(),
-        rows => residuals(rows, &adjusted.values, model),
-    };
     Ok(Fit {
         estimates: estimates.collect(),
-        training: residuals(&training),
-        test: residuals(&test),
+        training: residuals(&training, &adjusted.values, model),
+        test: residuals(&test, &adjusted.values, model),
         motions: training.iter().map(|rows| rows.right.len() / speeds).sum(),
         condition: adjusted.condition,
     })
@@ -139,13 +129,7 @@ fn gains(
     let columns = |input: f64| {
         let mut u = moment.u.clone();
         u[..model.info().declared_inputs].fill(input);
-        let at = At {
-            t: moment.t,
-            x: &moment.x,
-            u: &u,
-            p,
-        };
-        equations.at(at, &moment.accelerations).regressor
+        equations.at(moment, &u, p).regressor
     };
     let change = columns(1.0) - columns(0.0);
     let parameters = structure.parameters.iter().zip(change.column_iter());
@@ -172,16 +156,10 @@ fn rows(
         inputs: DVector::zeros(count),
     };
     for (place, moment) in stretch.moments.iter().enumerate() {
-        let at = |u| At {
-            t: moment.t,
-            x: &moment.x,
-            u,
-            p,
-        };
-        let linear = equations.at(at(&moment.u), &moment.accelerations);
+        let linear = equations.at(moment, &moment.u, p);
         let mut without = moment.u.clone();
         without[..model.info().declared_inputs].fill(0.0);
-        let free = equations.at(at(&without), &moment.accelerations);
+        let free = equations.at(moment, &without, p);
         let values = DVector::from_column_slice(&linear.values);
         let nominal = &linear.regressor * values + &linear.rest;
         let first = place * speeds;
@@ -196,21 +174,21 @@ fn rows(
     rows
 }
 
+/// Residuals of each equation; empty where there is no stretch.
 fn residuals(stretches: &[&Rows], values: &DVector<f64>, model: &dyn Model) -> Vec<Speed> {
     let info = model.info();
+    if stretches.is_empty() {
+        return Vec::new();
+    }
     let root_mean_square = |speed: usize, of: &dyn Fn(&Rows) -> DVector<f64>| {
-        let own = stretches.iter().flat_map(|rows| {
-            let all = of(rows);
-            let own: Vec<f64> = all
-                .iter()
-                .skip(speed)
-                .step_by(info.speeds)
-                .copied()
-                .collect();
-            own
-        });
-        let (sum, count) = own.fold((0.0, 0.0), |(sum, count), f| (sum + f * f, count + 1.0));
-        (sum / f64::max(count, 1.0)).sqrt()
+        let (mut sum, mut count) = (0.0, 0.0_f64);
+        for rows in stretches {
+            for f in of(rows).iter().skip(speed).step_by(info.speeds) {
+                sum += f * f;
+                count += 1.0;
+            }
+        }
+        (sum / count.max(1.0)).sqrt()
     };
     let speeds = info.speed_quantities().iter().enumerate();
     speeds

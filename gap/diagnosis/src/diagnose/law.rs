@@ -234,11 +234,11 @@ impl Lawful {
         drop(estimation);
         let first = &self.left.first;
         let law = match &self.kind {
-            Kind::Memory(Memory::HiddenMass(hidden)) => {
-                hidden_mass::law(main, first, &hidden.behind, &fitted, &places)
+            Kind::Memory(Memory::HiddenMass { behind, .. }) => {
+                hidden_mass::law(main, first, behind, &fitted, &places)
             }
-            Kind::Memory(Memory::Hysteresis(hysteresis)) => {
-                hysteresis::law(main, first, &hysteresis.along, &fitted, &places)
+            Kind::Memory(Memory::Hysteresis { along, .. }) => {
+                hysteresis::law(main, first, along, &fitted, &places)
             }
             Kind::Waves(series) => {
                 let dependence = dependence(main, first);

@@ -2,19 +2,21 @@
 
 use appell_estimate::Unknown;
 use appell_spec::Mechanism;
-use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
+use appell_spec::compose::Composition;
+use appell_spec::edit::EditError;
+use toml_edit::{DocumentMut, InlineTable, Item, TableLike, Value};
 
-use super::effect::{Effect, EffectError, Family, Filter};
+use super::effect::{Effect, EffectError, Family};
 use super::load::Stated;
 use super::place::Source;
 use super::site::{DRIVES, Site, Sites};
-use super::site_kind::SiteKind;
 use super::term::{Term, texts};
 
 /// How a candidate acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Acts {
     /// By items of the spec, with parameters of its own.
+    #[default]
     Items,
     /// By the value of a parameter that the spec has.
     Parameter(usize),
@@ -75,7 +77,7 @@ impl Part {
 }
 
 /// An effect at a site.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Candidate {
     /// Kind of the effect.
     pub kind: String,
@@ -130,61 +132,6 @@ impl Candidate {
         &self.items
     }
 
-    /// A measured force along a pseudo-velocity, no effect of the library: `force` is an expression of the spec
-    /// language, in which `{law}` is the prefix of its coefficients. Each of these has a unit and a normal prior.
-    pub(crate) fn measured(
-        mechanism: &Mechanism,
-        speed: &str,
-        force: &str,
-        numbers: &[(String, String, [f64; 2])],
-    ) -> Self {
-        let stem = unused(format!("law_{}", identifier(speed)), mechanism);
-        let mut document = DocumentMut::new();
-        let mut parameters = Table::new();
-        let mut terms = Vec::new();
-        for (name, unit, known) in numbers {
-            let name = format!("{stem}_{name}");
-            let (value, unit) = (Value::from(known[0]), Value::from(unit));
-            let item = InlineTable::from_iter([("value", value), ("unit", unit)]);
-            parameters.insert(&name, Item::Value(item.into()));
-            terms.push((name, Part::Term(*known)));
-        }
-        let load = InlineTable::from_iter([
-            ("kind", Value::from("generalized")),
-            ("velocity", speed.into()),
-            ("force", filled(force, &[("law", &stem)]).into()),
-        ]);
-        let loads = Table::from_iter([(stem.clone(), Value::from(load))]);
-        document.insert("parameters", Item::Table(parameters));
-        document.insert("loads", Item::Table(loads));
-        Self {
-            kind: "law".to_owned(),
-            site: speed.to_owned(),
-            group: Vec::new(),
-            family: Family::Force,
-            about: format!("measured force along {speed}"),
-            is_component: false,
-            acts: Acts::Items,
-            parameters: terms,
-            stem,
-            centre: None,
-            items: document.to_string(),
-            brings: None,
-            hides: None,
-            added: Vec::new(),
-            limits: None,
-            has_tolerance: false,
-            counts: 1,
-            shows: Vec::new(),
-            source: None,
-        }
-    }
-
-    /// Whether it is a measured force.
-    pub(crate) fn is_measured(&self) -> bool {
-        self.kind == "law"
-    }
-
     /// Whether it is a single effect at several sites, such as all drives.
     pub(crate) fn is_of_group(&self) -> bool {
         !self.group.is_empty()
@@ -196,15 +143,6 @@ impl Candidate {
             [] => vec![self.site.clone()],
             group => group.to_vec(),
         }
-    }
-
-    /// Prior means of its coefficients.
-    pub(crate) fn expected(&self) -> Vec<f64> {
-        let expected = |(_, part): &(String, Part)| match part {
-            Part::Term([expected, _]) => Some(*expected),
-            _ => None,
-        };
-        self.parameters.iter().filter_map(expected).collect()
     }
 
     /// Whether it replaces rolling of a contact by creep.
@@ -239,8 +177,11 @@ impl Candidate {
         }
     }
 
-    /// The candidate with the declarations of its parameters only.
+    /// The candidate; one that adds a coordinate with the declarations of its parameters only.
     pub(super) fn declared(&self) -> Self {
+        if self.brings.is_none() {
+            return self.clone();
+        }
         let mut document: DocumentMut = self.items.parse().unwrap_or_default();
         document.retain(|section, _| section == "parameters");
         Self {
@@ -269,12 +210,12 @@ impl Candidate {
     /// same name.
     pub(super) fn all(
         effect: &Effect,
-        mechanism: &Mechanism,
         sites: &Sites<'_>,
         others: &[Self],
     ) -> Result<Vec<Self>, EffectError> {
+        let encoders = sites.encoders();
         let mut candidates = Vec::new();
-        for site in sites.of(effect.site) {
+        for site in effect.site.of(sites) {
             for (index, variant) in effect.variants.iter().enumerate() {
                 let mut words = variant.iter();
                 let along = words.find(|(word, _)| word == "offset_along");
@@ -287,7 +228,7 @@ impl Candidate {
                 } else {
                     stem
                 };
-                let mut id = unused(id, mechanism);
+                let mut id = unused(id, sites.mechanism);
                 while others.iter().any(|own| own.stem == id) {
                     id += "_too";
                 }
@@ -295,11 +236,8 @@ impl Candidate {
                 // The input of a servo is a set-point; what its actuator adds is a term of the load.
                 let adds_to = |name: &str| candidate.added.iter().any(|own| own.quantity == name);
                 // Those of an encoder in the loop of a servo are other effects of the same names.
-                let is_in_loop = matches!(effect.filter, Some(Filter::Bias | Filter::Scale))
-                    && sites
-                        .of(SiteKind::Encoder)
-                        .iter()
-                        .any(|own| own.index == site.index);
+                let is_in_loop = matches!(candidate.acts, Acts::Bias(_) | Acts::Scale(_))
+                    && encoders.iter().any(|own| own.index == site.index);
                 if !(adds_to(&site.name) && sites.is_servo(&site.name) || is_in_loop) {
                     candidates.push(candidate);
                 }
@@ -307,7 +245,7 @@ impl Candidate {
         }
         if effect.is_together {
             for (name, members) in sites.groups(effect.site) {
-                candidates.extend(Self::together(effect, mechanism, sites, &name, &members)?);
+                candidates.extend(Self::together(effect, sites, &name, &members)?);
             }
         }
         Ok(candidates)
@@ -316,14 +254,16 @@ impl Candidate {
     /// An effect at a group of sites, with sizes for each of them; of signals, a component for each site.
     fn together(
         effect: &Effect,
-        mechanism: &Mechanism,
         sites: &Sites<'_>,
         group: &str,
         members: &[String],
     ) -> Result<Vec<Self>, EffectError> {
-        let mut places = sites.of(effect.site);
+        let mut places = effect.site.of(sites);
         places.retain(|site| members.contains(&site.name));
-        let stem = unused(format!("{}_{}", effect.name, identifier(group)), mechanism);
+        let stem = unused(
+            format!("{}_{}", effect.name, identifier(group)),
+            sites.mechanism,
+        );
         let own = places.iter().map(|site| {
             let id = format!("{stem}_{}", identifier(&site.name));
             Self::new(effect, site, &id, &effect.variants[0])
@@ -348,18 +288,13 @@ impl Candidate {
             };
             return Ok(own.into_iter().map(component).collect());
         }
-        let parts = own.iter().map(|one| one.items.parse());
-        let mut items = DocumentMut::new();
-        for part in parts.filter_map(Result::<DocumentMut, _>::ok) {
-            merge(&mut items, &part);
-        }
         Ok(vec![Self {
             site: group.to_owned(),
             group: places.iter().map(|place| place.name.clone()).collect(),
             about,
             parameters: own.iter().flat_map(|one| one.parameters.clone()).collect(),
             stem,
-            items: items.to_string(),
+            items: merged(&own).unwrap_or_default(),
             ..first.clone()
         }])
     }
@@ -371,34 +306,31 @@ impl Candidate {
         variant: &[(String, String)],
     ) -> Result<Self, EffectError> {
         let mut words: Vec<(&str, &str)> = vec![("effect", id), ("site", &site.name)];
-        let own = variant
-            .iter()
-            .map(|(word, text)| (word.as_str(), text.as_str()));
+        let own = variant.iter();
+        let own = own.map(|(word, text)| (word.as_str(), text.as_str()));
         // Placeholders of a variant may contain placeholders of the site.
         let of_site = site.words.iter().map(|(word, text)| (*word, text.as_str()));
         words.extend(own.chain(of_site));
         let filled = filled(&filled(&effect.text, &words), &words);
-        let file = effect.file.clone();
         let source = Source {
-            file: file.unwrap_or_else(|| effect.name.clone()),
+            file: effect.file.as_ref().unwrap_or(&effect.name).clone(),
             text: effect.text.clone(),
             words: (words.iter())
                 .map(|(word, text)| ((*word).to_owned(), (*text).to_owned()))
                 .collect(),
         };
-        let mut document: DocumentMut = filled
-            .parse()
-            .map_err(|e: toml_edit::TomlError| source.unwritten(e.message()))?;
+        let mut document: DocumentMut = filled.parse().map_err(|e: toml_edit::TomlError| {
+            let problem = "with its placeholders replaced, the file is not TOML";
+            source.wrong(&[], &format!("{problem}: {}", e.message()))
+        })?;
         let added = Term::of(&mut document);
         let load = document.remove("load");
         let limits = load.iter().flat_map(texts).map(|(_, text)| text).next();
         let limits = site.stated.clone().zip(limits);
         let shows = shown(&mut document, id);
         document.remove("effect");
-        let switch = effect
-            .switch
-            .as_deref()
-            .map(|text| self::filled(text, &words));
+        let switch = effect.switch.as_deref();
+        let switch = switch.map(|text| self::filled(text, &words));
         let mut parameters = Vec::new();
         if let Some(table) = document
             .get_mut("parameters")
@@ -406,13 +338,13 @@ impl Candidate {
         {
             for (name, item) in table.iter_mut() {
                 let name = name.get().to_owned();
-                let item = item
-                    .as_table_like_mut()
-                    .ok_or_else(|| source.wrong(&name, None, "a parameter is a table"))?;
+                let item = item.as_table_like_mut().ok_or_else(|| {
+                    source.wrong(&["parameters", &name], "a parameter is a table")
+                })?;
                 for key in ["value", "at_least", "at_most", "std"] {
                     compute(item, key).map_err(|text| {
                         let message = format!("`{text}` is no product of numbers");
-                        source.wrong(&name, Some(key), &message)
+                        source.wrong(&["parameters", &name, key], &message)
                     })?;
                 }
                 let is_zero = item.get("value").and_then(number).is_some_and(|v| v == 0.0);
@@ -427,56 +359,36 @@ impl Candidate {
                 parameters.push((name, part));
             }
         }
-        let brings = document.contains_key("coordinates").then_some(site.index);
-        let acts = match effect.filter {
-            None => Acts::Items,
-            Some(Filter::Value) => Acts::Parameter(site.index),
-            Some(Filter::Lag) => Acts::Lag(site.index),
-            Some(Filter::Delay) => Acts::Delay(site.index),
-            Some(Filter::Bias) => Acts::Bias(site.index),
-            Some(Filter::Scale) => Acts::Scale(site.index),
-            Some(Filter::Late) => Acts::Late(site.index),
-            Some(Filter::Slow) => Acts::Slow(site.index),
-        };
         Ok(Self {
             kind: effect.name.clone(),
             site: site.name.clone(),
-            group: Vec::new(),
             family: effect.family,
             about: self::filled(&effect.about, &words),
             is_component: effect.is_vector,
-            acts,
+            acts: (effect.acts)(site.index),
             parameters,
             stem: id.to_owned(),
             centre: (site.words.iter())
                 .find(|(word, _)| *word == "centre")
                 .map(|(_, name)| name.clone()),
             items: document.to_string(),
-            brings,
-            hides: None,
+            brings: document.contains_key("coordinates").then_some(site.index),
             added,
             limits,
             has_tolerance: effect.has_tolerance,
             counts: effect.counts,
             shows,
             source: effect.file.is_some().then_some(source),
+            ..Self::default()
         })
     }
 }
 
-/// Adds the sections of another document; their keys are disjoint.
-fn merge(items: &mut DocumentMut, part: &DocumentMut) {
-    for (section, own) in part.iter() {
-        let whole = items
-            .entry(section)
-            .or_insert(Item::Table(Table::new()))
-            .as_table_like_mut();
-        if let (Some(whole), Some(own)) = (whole, own.as_table_like()) {
-            for (name, item) in own.iter() {
-                whole.insert(name, item.clone());
-            }
-        }
-    }
+/// The items of all, whose names differ.
+fn merged(all: &[Candidate]) -> Result<String, EditError> {
+    let mut items = Composition::new("")?;
+    all.iter().try_for_each(|one| items.add(&one.items))?;
+    Ok(items.text())
 }
 
 /// Moves the section `[channel]` to outputs: the measured quantities with the outputs that replace them.
@@ -487,9 +399,7 @@ fn shown(document: &mut DocumentMut, id: &str) -> Vec<(String, String)> {
     for (state, value) in channel.filter(|(_, value)| !value.is_empty()) {
         let output = format!("{id}_shows_{state}");
         let item = InlineTable::from_iter([("value", Value::from(value))]);
-        let outputs = document
-            .entry("outputs")
-            .or_insert(Item::Table(Table::new()));
+        let outputs = document.entry("outputs").or_insert(toml_edit::table());
         if let Some(outputs) = outputs.as_table_like_mut() {
             outputs.insert(&output, Item::Value(item.into()));
         }
@@ -512,11 +422,9 @@ fn compute(table: &mut dyn TableLike, key: &str) -> Result<(), String> {
     let Some(text) = table.get(key).and_then(Item::as_str).map(str::to_owned) else {
         return Ok(());
     };
-    let factors: Result<Vec<f64>, _> = text
-        .split('*')
-        .map(|factor| factor.trim().parse::<f64>())
-        .collect();
-    let product = factors.map_err(|_| text)?.iter().product::<f64>();
+    let factors = text.split('*').map(|factor| factor.trim().parse::<f64>());
+    let product: Result<f64, _> = factors.product();
+    let product = product.map_err(|_| text.clone())?;
     table.insert(key, Item::Value(Value::from(product)));
     Ok(())
 }

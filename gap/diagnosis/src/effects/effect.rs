@@ -29,17 +29,19 @@
 //! "{site}" = "{site} + {effect}"     # text changes nothing
 //! ```
 
-use appell_spec::expr::Span;
+use appell_spec::outline::Outline;
 use appell_spec::{Code, Report, closest, did_you_mean, shown};
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
-use super::site_kind::SiteKind;
+use super::candidate::Acts;
+use super::site_kind::{KINDS, SiteKind};
 use appell_recordings::fields::{Fields, Value};
 
 /// Families of effects.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 #[expect(missing_docs, reason = "the words of the report")]
 pub enum Family {
+    #[default]
     Force,
     Parameter,
     Actuator,
@@ -49,25 +51,18 @@ pub enum Family {
 }
 
 impl Family {
-    const ALL: [Self; 6] = [
-        Self::Force,
-        Self::Parameter,
-        Self::Actuator,
-        Self::Constraint,
-        Self::Joint,
-        Self::Sensor,
+    const WORDS: [(&'static str, Self); 6] = [
+        ("force", Self::Force),
+        ("parameter", Self::Parameter),
+        ("actuator", Self::Actuator),
+        ("constraint", Self::Constraint),
+        ("joint", Self::Joint),
+        ("sensor", Self::Sensor),
     ];
 
     /// Its word.
     pub const fn word(self) -> &'static str {
-        match self {
-            Self::Force => "force",
-            Self::Parameter => "parameter",
-            Self::Actuator => "actuator",
-            Self::Constraint => "constraint",
-            Self::Joint => "joint",
-            Self::Sensor => "sensor",
-        }
+        Self::WORDS[self as usize].0
     }
 
     /// Domain of a gap of this family; backlash of a joint is a violated constraint.
@@ -79,46 +74,26 @@ impl Family {
     }
 }
 
-/// Effects outside the equations of motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Filter {
-    /// The site is a parameter, whose value is estimated.
-    Value,
-    /// An input lags.
-    Lag,
-    /// An input is delayed.
-    Delay,
-    /// A channel has a bias.
-    Bias,
-    /// A channel has a scale.
-    Scale,
-    /// A channel has a delay.
-    Late,
-    /// A channel lags.
-    Slow,
-}
-
-impl Filter {
-    const ALL: [(&'static str, Self); 7] = [
-        ("value", Self::Value),
-        ("lag", Self::Lag),
-        ("delay", Self::Delay),
-        ("bias", Self::Bias),
-        ("scale", Self::Scale),
-        ("late", Self::Late),
-        ("slow", Self::Slow),
-    ];
-}
+/// How an effect outside the equations of motion acts at the site of an index, by the word of its filter.
+const FILTERS: [(&str, fn(usize) -> Acts); 7] = [
+    ("value", Acts::Parameter),
+    ("lag", Acts::Lag),
+    ("delay", Acts::Delay),
+    ("bias", Acts::Bias),
+    ("scale", Acts::Scale),
+    ("late", Acts::Late),
+    ("slow", Acts::Slow),
+];
 
 /// An effect, for any site.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct Effect {
     /// Its kind, such as `viscous_friction`.
     pub name: String,
     /// Its family.
     pub family: Family,
     /// Its kind of sites.
-    pub site: SiteKind,
+    pub site: &'static SiteKind,
     /// One sentence with `{site}`.
     pub about: String,
     /// Placeholders of the text, one list for each variant.
@@ -130,7 +105,8 @@ pub struct Effect {
     /// Number of effects as which it counts in the prior.
     pub(super) counts: usize,
     pub(super) switch: Option<String>,
-    pub(super) filter: Option<Filter>,
+    /// How it acts at the site of an index.
+    pub(super) acts: fn(usize) -> Acts,
     /// Whether its size has the tolerance that the line of an input or of a channel states.
     pub(super) has_tolerance: bool,
     /// The whole file.
@@ -169,19 +145,6 @@ pub(super) const KEYS: &[&str] = &[
 const EVERYWHERE: &[&str] = &["effect", "site"];
 
 impl Effect {
-    /// Reads a user-defined effect from a file; `name` is its name unless the file states one.
-    pub fn read(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
-        Ok(Self {
-            file: Some(file.to_owned()),
-            ..Self::parsed(name, file, text)?
-        })
-    }
-
-    /// Reads an effect that is shipped.
-    pub(super) fn shipped(name: &str, text: &str) -> Result<Self, EffectError> {
-        Self::parsed(name, &format!("{name}.toml"), text)
-    }
-
     /// The whole file.
     pub fn text(&self) -> &str {
         &self.text
@@ -205,7 +168,8 @@ impl Effect {
         self.text.lines().map_while(|line| line.strip_prefix('#'))
     }
 
-    fn parsed(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
+    /// Reads a user-defined effect from a file; `name` is its name unless the file states one.
+    pub fn read(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
         let (mut fields, table) = Fields::new(file, text);
         let table = table.get_ref();
         if fields.is_wrong() {
@@ -221,26 +185,10 @@ impl Effect {
         };
         fields.only(header, KEYS);
         let at = table.get("effect").map_or(0..0, Value::span);
-        let families: Vec<&str> = Family::ALL.iter().map(|own| own.word()).collect();
-        let family = choice(
-            &mut fields,
-            header,
-            "family",
-            &families.join(", "),
-            |word| Family::ALL.into_iter().find(|own| own.word() == word),
-        );
-        let site = choice(
-            &mut fields,
-            header,
-            "site",
-            &SiteKind::kinds(),
-            SiteKind::of,
-        );
-        let filters: Vec<&str> = Filter::ALL.iter().map(|(word, _)| *word).collect();
-        let filter = choice(&mut fields, header, "filter", &filters.join(", "), |word| {
-            let mut all = Filter::ALL.into_iter();
-            all.find(|(own, _)| *own == word).map(|(_, filter)| filter)
-        });
+        let family = choice(&mut fields, header, "family", &Family::WORDS);
+        let kinds = KINDS.each_ref().map(|kind| (kind.word, kind));
+        let site = choice(&mut fields, header, "site", &kinds);
+        let filter = choice(&mut fields, header, "filter", &FILTERS);
         let about = fields.string(header, "about");
         for key in ["family", "site", "about"] {
             if header.get(key).is_none() {
@@ -256,9 +204,9 @@ impl Effect {
         let counts = count(&mut fields, header, "counts");
         let has_tolerance = flag(&mut fields, header, "tolerance");
         if let Some(site) = site {
-            let mut known = [EVERYWHERE, &site.words().concat()].concat();
+            let mut known = [EVERYWHERE, &site.words()].concat();
             known.extend(variants.iter().flatten().map(|(word, _)| word.as_str()));
-            unknown_words(&mut fields, table, text, &known);
+            unknown_words(&mut fields, text, &known);
             if let Some(coordinates) = table.get("coordinates")
                 && !site.bears_coordinate()
             {
@@ -282,10 +230,10 @@ impl Effect {
             is_together,
             counts,
             switch: switch.map(|(switch, _)| switch),
-            filter,
+            acts: filter.unwrap_or(|_| Acts::Items),
             has_tolerance,
             text: text.to_owned(),
-            file: None,
+            file: Some(file.to_owned()),
         })
     }
 }
@@ -293,8 +241,8 @@ impl Effect {
 /// The keywords of families and filters.
 #[cfg(test)]
 pub(super) fn choices() -> Vec<&'static str> {
-    let families = Family::ALL.into_iter().map(Family::word);
-    families.chain(Filter::ALL.map(|(word, _)| word)).collect()
+    let families = Family::WORDS.map(|(word, _)| word);
+    [&families[..], &FILTERS.map(|(word, _)| word)].concat()
 }
 
 /// `true` or `false`; `false` if the key is absent.
@@ -328,21 +276,21 @@ fn count(fields: &mut Fields<'_>, header: &DeTable<'_>, key: &str) -> usize {
 }
 
 /// An optional choice among keywords; any other value is reported.
-fn choice<T>(
+fn choice<T: Copy>(
     fields: &mut Fields<'_>,
     header: &DeTable<'_>,
     key: &str,
-    known: &str,
-    of: impl Fn(&str) -> Option<T>,
+    known: &[(&'static str, T)],
 ) -> Option<T> {
     let (word, at) = fields.string(header, key)?;
-    let found = of(&word);
+    let found = known.iter().find(|(own, _)| *own == word);
     if found.is_none() {
-        let message = format!("`{key}` is one of {known}");
-        let help = did_you_mean(&word, known.split(", "), String::new);
+        let known: Vec<&str> = known.iter().map(|(word, _)| *word).collect();
+        let message = format!("`{key}` is one of {}", known.join(", "));
+        let help = did_you_mean(&word, known, String::new);
         fields.tell(Code::UnknownName, message, at, &help);
     }
-    found
+    found.map(|(_, meaning)| *meaning)
 }
 
 /// Placeholders with their texts, one list for each variant: the common ones, then its own.
@@ -386,10 +334,9 @@ fn words(fields: &mut Fields<'_>, value: &Value<'_>, wanted: &str) -> Vec<(Strin
 }
 
 /// Reports unknown placeholders, in keys and in texts.
-fn unknown_words(fields: &mut Fields<'_>, table: &DeTable<'_>, text: &str, known: &[&str]) {
-    let mut places = Vec::new();
-    spans(table, &mut places);
-    for place in places {
+fn unknown_words(fields: &mut Fields<'_>, text: &str, known: &[&str]) {
+    let Outline { keys, strings } = Outline::new(text);
+    for place in keys.into_iter().chain(strings).map(|part| part.span) {
         let part = text.get(place.clone()).unwrap_or_default();
         for (start, _) in part.match_indices('{') {
             let rest = &part[start + 1..];
@@ -412,23 +359,6 @@ fn unknown_words(fields: &mut Fields<'_>, table: &DeTable<'_>, text: &str, known
     }
 }
 
-/// The positions of all keys and texts.
-fn spans(table: &DeTable<'_>, places: &mut Vec<Span>) {
-    for (key, value) in table {
-        places.push(key.span());
-        of_value(value, places);
-    }
-}
-
-fn of_value(value: &Value<'_>, places: &mut Vec<Span>) {
-    match value.get_ref() {
-        DeValue::String(_) => places.push(value.span()),
-        DeValue::Array(parts) => parts.iter().for_each(|part| of_value(part, places)),
-        DeValue::Table(table) => spans(table, places),
-        _ => {}
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -441,31 +371,28 @@ mod tests {
 
     #[test]
     fn a_file_tells_what_it_lacks_and_where() {
-        let lacks = |text, message: &str, place: &str| {
+        let slew = "[effect]\nfamily = 'actuator'\nsite = 'input'\nabout = 'slew rate of {site}'\n[coordinates]\n\
+                    z = { unit = 'm' }";
+        let moon = "[effect]\nfamily = 'force'\nsite = 'moon'";
+        let famly = "[effect]\nfamly = 'force'";
+        for (text, message, place) in [
+            ("[loads]", "the section `[effect]` is missing", "1:1"),
+            ("[effect]\nsite = 'body'", "`family` is missing", "1:"),
+            (moon, "`site` is one of coordinate", "3:8"),
+            (famly, "did you mean `family`?", "2:1"),
+            (
+                slew,
+                "an effect adds a coordinate only at a `driven_slider`",
+                "5:",
+            ),
+        ] {
+            let place = format!("mine/own.toml:{place}");
             let errors = errors(text);
             assert!(
-                errors.contains(message) && errors.contains(place),
+                errors.contains(message) && errors.contains(&place),
                 "{errors}"
             );
-        };
-        let place = "mine/own.toml:1:1";
-        lacks("[loads]", "the section `[effect]` is missing", place);
-        lacks(
-            "[effect]\nsite = 'body'",
-            "`family` is missing",
-            "mine/own.toml:1:",
-        );
-        lacks(
-            "[effect]\nfamily = 'force'\nsite = 'moon'",
-            "`site` is one of coordinate",
-            "mine/own.toml:3:8",
-        );
-        lacks("[effect]\nfamly = 'force'", "did you mean `family`?", "2:1");
-        lacks(
-            "[effect]\nfamily = 'actuator'\nsite = 'input'\nabout = 'slew rate of {site}'\n[coordinates]\nz = { unit = 'm' }",
-            "an effect adds a coordinate only at a `driven_slider`",
-            "mine/own.toml:5:",
-        );
+        }
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub(crate) fn controlled(load: &Load) -> Option<(usize, &Expr)> {
     follows.then_some((place, law))
 }
 
-fn is_zero(part: &Expr) -> bool {
+pub(super) fn is_zero(part: &Expr) -> bool {
     matches!(&part.kind, ExprKind::Number(n) if n.is_zero())
 }
 

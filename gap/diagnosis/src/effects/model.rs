@@ -94,10 +94,15 @@ pub fn candidates(
     effects: &[Effect],
     scales: &Scales,
 ) -> Result<Vec<Candidate>, ModelError> {
-    let sites = Sites::of_spec(mechanism, scales, &spec.text);
+    let text = &spec.text;
+    let sites = Sites {
+        mechanism,
+        scales,
+        text,
+    };
     let mut all = Vec::new();
     for effect in effects {
-        let own = Candidate::all(effect, mechanism, &sites, &all)?;
+        let own = Candidate::all(effect, &sites, &all)?;
         own.iter()
             .try_for_each(|candidate| check(spec, candidate))?;
         all.extend(own);
@@ -151,10 +156,10 @@ impl EffectModel {
         candidates.sort_by_key(Candidate::creeps);
         let others = candidates.partition_point(|one| !one.creeps());
         if others == candidates.len() {
-            return Self::with_all(spec, candidates);
+            return Self::requiring(spec, candidates, &OF_ESTIMATION);
         }
-        let rolling = Self::with_all(spec, candidates[..others].to_vec())?;
-        Ok(match Self::with_all(spec, candidates) {
+        let rolling = Self::requiring(spec, candidates[..others].to_vec(), &OF_ESTIMATION)?;
+        Ok(match Self::requiring(spec, candidates, &OF_ESTIMATION) {
             Ok(whole) => Self {
                 rolling: Some(rolling.model),
                 ..whole
@@ -172,20 +177,12 @@ impl EffectModel {
         Self::requiring(spec, candidates, &[FunctionKind::InverseDynamics])
     }
 
-    fn with_all(spec: &Spec, candidates: Vec<Candidate>) -> Result<Self, ModelError> {
-        Self::requiring(spec, candidates, &OF_ESTIMATION)
-    }
-
     fn requiring(
         spec: &Spec,
         candidates: Vec<Candidate>,
         functions: &[FunctionKind],
     ) -> Result<Self, ModelError> {
-        let declared = |one: &Candidate| match one.brings {
-            Some(_) => one.declared(),
-            None => one.clone(),
-        };
-        let declared: Vec<Candidate> = candidates.iter().map(declared).collect();
+        let declared: Vec<Candidate> = candidates.iter().map(Candidate::declared).collect();
         let text = with_candidates(&spec.text, &declared)?;
         let (mechanism, model) =
             derive(&spec.file, &text, functions).map_err(|error| blamed(spec, &declared, error))?;
@@ -224,12 +221,8 @@ impl EffectModel {
     fn augmented(&self, index: usize, drive: &Drive) -> Result<Augmented, ModelError> {
         let candidate = self.candidates[index].driven(&self.mechanism, drive);
         let others = self.candidates.iter().filter(|one| !one.creeps());
-        let beside = others.enumerate().map(|(other, one)| match one.brings {
-            Some(_) if other == index => candidate.clone(),
-            Some(_) => one.declared(),
-            None => one.clone(),
-        });
-        let beside: Vec<Candidate> = beside.collect();
+        let mut beside: Vec<Candidate> = others.map(Candidate::declared).collect();
+        beside[index].clone_from(&candidate);
         let text = with_candidates(&self.plain.text, &beside)?;
         let (mechanism, model) = derive(&self.plain.file, &text, &OF_ESTIMATION)?;
         Ok(Augmented {
@@ -378,10 +371,17 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
     }
     // Expressions of loads that effects refer to, each defined once: inputs act in them too.
     let mut stated = Composition::new("")?;
-    for (load, own) in limited(candidates) {
+    let mut limited: BTreeMap<&str, Vec<(&Candidate, &Stated, &str)>> = BTreeMap::new();
+    for candidate in candidates {
+        if let Some((stated, added)) = &candidate.limits {
+            let load = limited.entry(&candidate.site).or_default();
+            load.push((candidate, stated, added));
+        }
+    }
+    for (load, own) in limited {
         let added: Vec<&str> = own.iter().map(|(_, _, added)| *added).collect();
-        for (place, (effect, as_in_spec, _)) in own.iter().enumerate() {
-            stated.add(&as_in_spec.definition(effect))?;
+        for (place, (candidate, as_in_spec, _)) in own.iter().enumerate() {
+            stated.add(&as_in_spec.definition(&candidate.stem))?;
             if place == 0 {
                 spec.add(&as_in_spec.with(load, &added))?;
             }
@@ -404,19 +404,4 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
         }
     }
     Ok(spec.text())
-}
-
-/// A candidate's name in a spec, the load as stated there, and the term added to it.
-type Limit<'c> = (&'c str, &'c Stated, &'c str);
-
-/// The loads to whose expressions candidates add.
-fn limited(candidates: &[Candidate]) -> BTreeMap<&str, Vec<Limit<'_>>> {
-    let mut loads: BTreeMap<&str, Vec<Limit<'_>>> = BTreeMap::new();
-    for candidate in candidates {
-        if let Some((stated, added)) = &candidate.limits {
-            let load = loads.entry(&candidate.site).or_default();
-            load.push((&candidate.stem, stated, added));
-        }
-    }
-    loads
 }

@@ -30,24 +30,13 @@ impl Source {
         EffectError::from(Report::new(&*self.file, &*self.text, diagnostics.collect()))
     }
 
-    /// An error in a parameter.
-    pub(super) fn wrong(&self, name: &str, key: Option<&str>, message: &str) -> EffectError {
-        let mut path = vec!["parameters".to_owned(), name.to_owned()];
-        path.extend(key.map(str::to_owned));
+    /// An error at a path of the file; without one, in all of it.
+    pub(super) fn wrong(&self, path: &[&str], message: &str) -> EffectError {
+        let path: Vec<String> = path.iter().map(|&key| key.to_owned()).collect();
         let (table, _) = DeTable::parse_recoverable(&self.text);
-        let at = self.follow(table.get_ref(), &path);
-        self.error_at(at, message)
-    }
-
-    /// The file is not TOML after its placeholders are replaced.
-    pub(super) fn unwritten(&self, message: &str) -> EffectError {
-        let message = format!("with its placeholders replaced, the file is not TOML: {message}");
-        self.error_at(None, &message)
-    }
-
-    fn error_at(&self, at: Option<Span>, message: &str) -> EffectError {
+        let at = self.follow(table.get_ref(), &path).unwrap_or(0..0);
         let diagnostic = Diagnostic::error(Code::WrongType, self.in_its_words(message));
-        let diagnostic = diagnostic.at(at.unwrap_or(0..0), "");
+        let diagnostic = diagnostic.at(at, "");
         Report::new(&*self.file, &*self.text, vec![diagnostic]).into()
     }
 

@@ -1,18 +1,18 @@
 //! The sites in a mechanism at which effects may act, and the placeholders that they define in the text of an
 //! effect.
 
+mod bodies;
 mod wheels;
 
 use appell_spec::expr::{Expr, ExprKind, Quantity};
 use appell_spec::mechanism::{
-    BodyId, CoordinateId, InputId, Load, LoadKind, Mechanism, ParameterId, PseudoVelocity, SpeedId,
+    CoordinateId, Input, Label, Load, LoadKind, Mechanism, ParameterId, PseudoVelocity, SpeedId,
 };
 use appell_spec::units::{Dimension, Unit};
 use num_traits::{ToPrimitive, Zero};
 
-use super::extent::Extent;
-use super::load::{Stated, controlled};
-use super::site_kind::{LATER_BODY, LATER_DRIVEN, SiteKind};
+use super::load::{Stated, controlled, is_zero};
+use super::site_kind::SiteKind;
 
 /// Typical magnitudes from recordings, in SI.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,8 +49,18 @@ const MANY_DRIVES: [usize; 2] = [3, 2];
 /// Number of coordinates beyond which only neighbours form pairs.
 const MANY_PAIRS: usize = 3;
 
+/// The axes of a frame.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
 /// Distance of the initial position of a stop from the end of the motion, relative to its range.
 const WITHIN: f64 = 0.05;
+
+/// The units of a length and of the force along it, and of an angle.
+pub(super) const LENGTH: [&str; 2] = ["m", "N"];
+pub(super) const ANGLE: [&str; 2] = ["rad", "N*m"];
+
+/// A placeholder with its text.
+type Word = (&'static str, String);
 
 /// A site.
 #[derive(Debug, Clone, Default)]
@@ -60,144 +70,37 @@ pub(super) struct Site {
     /// Its index among the parameters, inputs, channels, and so on.
     pub(super) index: usize,
     /// Placeholders with their texts.
-    pub(super) words: Vec<(&'static str, String)>,
+    pub(super) words: Vec<Word>,
     /// Axes along which a parameter of the spec already gives the position of the centre of mass.
     pub(super) placed_along: Vec<&'static str>,
     /// The statement of a load in the spec.
     pub(super) stated: Option<Stated>,
 }
 
-/// Sites in a mechanism.
-pub(super) struct Sites<'m> {
-    mechanism: &'m Mechanism,
-    scales: &'m Scales,
-    /// The text of its spec, if known.
-    text: &'m str,
+impl Site {
+    fn new(name: &str, index: usize, words: Vec<Word>) -> Self {
+        Self {
+            name: name.to_owned(),
+            index,
+            words,
+            ..Self::default()
+        }
+    }
 }
 
-impl<'m> Sites<'m> {
-    pub(super) const fn new(mechanism: &'m Mechanism, scales: &'m Scales) -> Self {
-        Self::of_spec(mechanism, scales, "")
-    }
+/// Sites in a mechanism.
+pub(super) struct Sites<'m> {
+    pub(super) mechanism: &'m Mechanism,
+    pub(super) scales: &'m Scales,
+    /// The text of its spec, if known.
+    pub(super) text: &'m str,
+}
 
-    pub(super) const fn of_spec(
-        mechanism: &'m Mechanism,
-        scales: &'m Scales,
-        text: &'m str,
-    ) -> Self {
-        Self {
-            mechanism,
-            scales,
-            text,
-        }
-    }
-
-    /// All sites of a kind.
-    pub(super) fn of(&self, kind: SiteKind) -> Vec<Site> {
-        let sites = self.all(kind);
-        let later = [LATER_DRIVEN, LATER_BODY].concat();
-        let mut known: Vec<&str> = kind.words().concat();
-        known.retain(|word| !later.contains(word));
-        known.sort_unstable();
-        for site in &sites {
-            let mut own: Vec<&str> = site.words.iter().map(|(word, _)| *word).collect();
-            own.sort_unstable();
-            debug_assert_eq!(own, known, "words of {}", kind.word());
-        }
-        sites
-    }
-
-    fn all(&self, kind: SiteKind) -> Vec<Site> {
-        let is_length = |&q: &CoordinateId| self.dimension(q) == Dimension::LENGTH;
-        // An angle may have the unit 1.
-        let is_angle = |&q: &CoordinateId| self.dimension(q).is_none();
-        let moving = self.moving();
-        let moving = moving.into_iter();
-        match kind {
-            SiteKind::Coordinate => moving
-                .filter(|q| is_length(q) || is_angle(q))
-                .map(|q| self.coordinate(q))
-                .collect(),
-            SiteKind::Slider => moving
-                .filter(is_length)
-                .map(|q| self.coordinate(q))
-                .collect(),
-            SiteKind::Hinge => moving
-                .filter(is_angle)
-                .map(|q| self.coordinate(q))
-                .collect(),
-            SiteKind::DrivenSlider => self.driven(is_length),
-            SiteKind::DrivenHinge => self.driven(is_angle),
-            // Of a point without mass, which is a payload of some runs, nothing is unknown.
-            SiteKind::Body => self
-                .mechanism
-                .bodies
-                .ids()
-                .filter(|&body| !self.is_massless_point(body))
-                .map(|body| self.body(body))
-                .collect(),
-            SiteKind::RigidBody => self
-                .mechanism
-                .bodies
-                .ids()
-                .filter(|&body| self.mechanism.bodies[body].frame.is_some())
-                .map(|body| self.rigid_body(body))
-                .collect(),
-            SiteKind::Reached => moving.filter_map(|q| self.reached(q)).collect(),
-            SiteKind::Pair => self.pairs(),
-            SiteKind::Load => self
-                .loads()
-                .filter(|load| !self.is_servo(&load.name))
-                .collect(),
-            SiteKind::Servo => self
-                .loads()
-                .filter(|load| self.is_servo(&load.name))
-                .collect(),
-            SiteKind::Joint => moving
-                .filter(|&q| self.kind(q).is_some() && self.is_joint(q))
-                .map(|q| self.coordinate(q))
-                .collect(),
-            SiteKind::Encoder => self.encoders().collect(),
-            SiteKind::Wheel => self.wheels(),
-            SiteKind::Contact => self.contacts(),
-            SiteKind::Gravity => self.gravity().into_iter().collect(),
-            SiteKind::Parameter => self
-                .scales
-                .uncertain
-                .iter()
-                .map(|&p| self.parameter(ParameterId::new(p)))
-                .collect(),
-            SiteKind::Input => self
-                .mechanism
-                .inputs
-                .ids()
-                .filter(|input| self.scales.largest[input.index()] > 0.0)
-                .map(|input| self.input(input))
-                .collect(),
-            SiteKind::Channel => {
-                let columns = self.scales.channels.iter().enumerate();
-                let site = |(index, column): (usize, &String)| Site {
-                    name: column.clone(),
-                    index,
-                    words: Vec::new(),
-                    ..Site::default()
-                };
-                columns.map(site).collect()
-            }
-        }
-    }
-
-    fn is_massless_point(&self, body: BodyId) -> bool {
-        let body = &self.mechanism.bodies[body];
-        let stated = |quantity| match quantity {
-            Quantity::Parameter(id) => self.mechanism.parameters[id].value,
-            _ => f64::NAN,
-        };
-        body.frame.is_none() && body.mass.value(&stated) == 0.0
-    }
-
-    fn dimension(&self, coordinate: CoordinateId) -> Dimension {
-        self.mechanism.coordinates[coordinate].label.unit.dimension
+impl Sites<'_> {
+    /// Coordinates that are not prescribed and pass a test.
+    pub(super) fn coordinates(&self, fits: impl Fn(CoordinateId) -> bool) -> Vec<Site> {
+        let moving = self.moving().into_iter().filter(|&q| fits(q));
+        moving.map(|q| self.coordinate(q)).collect()
     }
 
     /// Coordinates whose rates appear in definitions of the pseudo-velocities; all others are dependent.
@@ -209,23 +112,26 @@ impl<'m> Sites<'m> {
         self.mechanism.coordinates.ids().filter(stands).collect()
     }
 
-    /// A coordinate, with the range of its motion.
-    fn reached(&self, index: CoordinateId) -> Option<Site> {
-        let [least, most] = self.scales.reached[index.index()]?;
-        let range = most - least;
-        let mut site = self.coordinate(index);
-        site.words.extend([
-            ("upper", number(most - WITHIN * range)),
-            ("lower", number(least + WITHIN * range)),
-            ("range", number(range)),
-        ]);
-        Some(site)
+    /// Coordinates with the ranges of their motions.
+    pub(super) fn reached(&self) -> Vec<Site> {
+        let site = |q: CoordinateId| {
+            let [least, most] = self.scales.reached[q.index()]?;
+            let range = most - least;
+            let mut site = self.coordinate(q);
+            site.words.extend([
+                ("upper", number(most - WITHIN * range)),
+                ("lower", number(least + WITHIN * range)),
+                ("range", number(range)),
+            ]);
+            Some(site)
+        };
+        self.moving().into_iter().filter_map(site).collect()
     }
 
     /// Pairs of coordinates.
-    fn pairs(&self) -> Vec<Site> {
+    pub(super) fn pairs(&self) -> Vec<Site> {
         let mut moving = self.moving();
-        moving.retain(|&q| self.kind(q).is_some());
+        moving.retain(|&q| self.units(q).is_some());
         let far = if moving.len() > MANY_PAIRS {
             1
         } else {
@@ -240,58 +146,52 @@ impl<'m> Sites<'m> {
             .collect()
     }
 
-    fn pair(&self, [first, second]: [CoordinateId; 2]) -> Option<Site> {
-        let ([first_unit, first_force], [second_unit, second_force]) =
-            (self.kind(first)?, self.kind(second)?);
-        let [first_rate, second_rate] = [first, second].map(|q| self.scales.rates[q.index()]);
-        let ratio = if first_unit == second_unit {
+    fn pair(&self, pair: [CoordinateId; 2]) -> Option<Site> {
+        let [[unit, force], [other_unit, other_force]] =
+            [self.units(pair[0])?, self.units(pair[1])?];
+        let [rate, other_rate] = pair.map(|q| self.scales.rates[q.index()]);
+        let ratio = if unit == other_unit {
             1.0
         } else {
-            first_rate / second_rate
+            rate / other_rate
         };
-        let label = |q: CoordinateId| self.mechanism.coordinates[q].label.name.clone();
-        let texts = [first_unit, second_unit, first_force, second_force].map(str::to_owned);
-        let [first_unit, second_unit, first_force, second_force] = texts;
-        Some(Site {
-            name: format!("{},{}", label(first), label(second)),
-            index: first.index(),
-            words: vec![
-                ("first", label(first)),
-                ("second", label(second)),
-                ("first_unit", first_unit),
-                ("second_unit", second_unit),
-                ("first_force", first_force),
-                ("second_force", second_force),
-                ("ratio", number(ratio)),
-            ],
-            ..Site::default()
-        })
+        let [first, second] = pair.map(|q| self.name(q));
+        let words = vec![
+            ("first", first.to_owned()),
+            ("second", second.to_owned()),
+            ("first_unit", unit.to_owned()),
+            ("second_unit", other_unit.to_owned()),
+            ("first_force", force.to_owned()),
+            ("second_force", other_force.to_owned()),
+            ("ratio", number(ratio)),
+        ];
+        let name = format!("{first},{second}");
+        Some(Site::new(&name, pair[0].index(), words))
     }
 
-    /// Loads that depend on the motion like a controller.
-    fn loads(&self) -> impl Iterator<Item = Site> {
-        let loads = self.mechanism.loads.iter().enumerate();
-        let site = move |(index, load): (usize, &Load)| {
+    /// Loads that depend on the motion like a controller: those of the actuators of inputs, or all others.
+    pub(super) fn loads(&self, of_servos: bool) -> Vec<Site> {
+        let site = |(index, load): (usize, &Load)| {
             let largest = self.scales.loads[index];
             let stated = Stated::of(self.mechanism, load, self.text)?;
-            (largest > 0.0).then(|| Site {
-                name: load.name.clone(),
-                index,
-                words: vec![
-                    ("expression", Stated::name("{effect}")),
-                    ("unit", stated.unit.to_owned()),
-                    ("largest", number(largest)),
-                    ("narrow", number(NARROW * largest)),
-                ],
+            let words = vec![
+                ("expression", Stated::name("{effect}")),
+                ("unit", stated.unit.to_owned()),
+                ("largest", number(largest)),
+                ("narrow", number(NARROW * largest)),
+            ];
+            let site = Site {
                 stated: Some(stated),
-                ..Site::default()
-            })
+                ..Site::new(&load.name, index, words)
+            };
+            (largest > 0.0 && self.is_servo(&load.name) == of_servos).then_some(site)
         };
-        loads.filter_map(site)
+        let loads = self.mechanism.loads.iter().enumerate();
+        loads.filter_map(site).collect()
     }
 
     /// Whether a load with the name of an input acts along a coordinate.
-    fn is_joint(&self, q: CoordinateId) -> bool {
+    pub(super) fn is_joint(&self, q: CoordinateId) -> bool {
         let mut loads = self.mechanism.loads.iter();
         loads.any(|load| {
             let LoadKind::Generalized { velocity, .. } = &load.kind else {
@@ -301,27 +201,22 @@ impl<'m> Sites<'m> {
         })
     }
 
+    fn joints(&self) -> impl Iterator<Item = CoordinateId> {
+        let all = self.mechanism.coordinates.ids();
+        all.filter(|&q| self.is_joint(q))
+    }
+
     /// Channels of the joints of a robot.
-    fn encoders(&self) -> impl Iterator<Item = Site> {
+    pub(super) fn encoders(&self) -> Vec<Site> {
         let channels = self.scales.channels.iter().zip(&self.scales.coordinates);
-        channels
-            .enumerate()
-            .filter_map(|(index, (column, coordinate))| {
-                let mut joints = self
-                    .mechanism
-                    .coordinates
-                    .ids()
-                    .filter(|&q| self.is_joint(q));
-                let q = joints.find(|q| Some(q.index()) == *coordinate)?;
-                let [unit, _] = self.kind(q)?;
-                let name = &self.mechanism.coordinates[q].label.name;
-                Some(Site {
-                    name: column.clone(),
-                    index,
-                    words: vec![("coordinate", name.clone()), ("unit", unit.to_owned())],
-                    ..Site::default()
-                })
-            })
+        let site = |(index, (column, coordinate)): (usize, (&String, &Option<usize>))| {
+            let q = self.joints().find(|q| Some(q.index()) == *coordinate)?;
+            let [unit, _] = self.units(q)?;
+            let name = self.name(q).to_owned();
+            let words = vec![("coordinate", name), ("unit", unit.to_owned())];
+            Some(Site::new(column, index, words))
+        };
+        channels.enumerate().filter_map(site).collect()
     }
 
     /// Whether a load is the actuator of the input of this name.
@@ -335,9 +230,9 @@ impl<'m> Sites<'m> {
         inputs.any(|input| input.label.name == name)
     }
 
-    /// Coordinates whose rates are pseudo-velocities and appear in no other one, if there are inputs; the
+    /// Coordinates of some units whose rates are pseudo-velocities and appear in no other one, if there are inputs; the
     /// index is that of the pseudo-velocity.
-    fn driven(&self, fits: impl Fn(&CoordinateId) -> bool) -> Vec<Site> {
+    pub(super) fn driven(&self, units: [&str; 2]) -> Vec<Site> {
         let speeds = &self.mechanism.pseudo_velocities;
         let of = |(index, speed): (usize, &PseudoVelocity)| {
             let ExprKind::Quantity(Quantity::Rate(q)) = speed.definition.kind else {
@@ -352,7 +247,7 @@ impl<'m> Sites<'m> {
             };
             let own = ("pseudo_velocity", speed.label.name.clone());
             site.words.push(own);
-            (users.count() == 1 && fits(&q)).then_some(site)
+            (users.count() == 1 && self.units(q) == Some(units)).then_some(site)
         };
         if self.scales.largest.iter().all(|&largest| largest <= 0.0) {
             return Vec::new();
@@ -362,13 +257,11 @@ impl<'m> Sites<'m> {
 
     /// Groups of sites at which an effect may have a common cause, with their names: all drives, where there are many, or
     /// the position and the rate that an encoder of a robot gives, under the name of its joint.
-    pub(super) fn groups(&self, kind: SiteKind) -> Vec<(String, Vec<String>)> {
-        if kind != SiteKind::Channel {
-            let drives = self.drives(kind).into_iter().map(str::to_owned);
-            return vec![(DRIVES.to_owned(), drives.collect())];
+    pub(super) fn groups(&self, kind: &SiteKind) -> Vec<(String, Vec<String>)> {
+        if kind.word != "channel" {
+            return vec![(DRIVES.to_owned(), self.drives(kind.word == "input"))];
         }
-        let joints = self.mechanism.coordinates.ids();
-        let groups = joints.filter(|&q| self.is_joint(q)).map(|q| {
+        let groups = self.joints().map(|q| {
             let measures = |channel: usize| {
                 let speed = self.scales.speeds[channel].map(SpeedId::new);
                 self.scales.coordinates[channel] == Some(q.index())
@@ -376,129 +269,76 @@ impl<'m> Sites<'m> {
             };
             let columns = self.scales.channels.iter().enumerate();
             let own = columns.filter(|(channel, _)| measures(*channel));
-            let name = self.mechanism.coordinates[q].label.name.clone();
-            (name, own.map(|(_, column)| column.clone()).collect())
+            let columns = own.map(|(_, column)| column.clone()).collect();
+            (self.name(q).to_owned(), columns)
         });
         groups.collect()
     }
 
     /// The names of driven coordinates, or of the inputs, where there are many, as in a robot.
-    fn drives(&self, kind: SiteKind) -> Vec<&str> {
+    fn drives(&self, are_inputs: bool) -> Vec<String> {
         let driven = driven(self.mechanism);
         let is_of_robot = driven.iter().all(|&q| self.is_joint(q));
         if driven.len() < MANY_DRIVES[usize::from(is_of_robot)] {
             return Vec::new();
         }
-        if kind == SiteKind::Input {
+        if are_inputs {
             let inputs = self.mechanism.inputs.iter();
-            return inputs.map(|input| input.label.name.as_str()).collect();
+            return inputs.map(|input| input.label.name.clone()).collect();
         }
-        let name = |q: &CoordinateId| self.mechanism.coordinates[*q].label.name.as_str();
-        driven.iter().map(name).collect()
+        let names = driven.iter().map(|&q| self.name(q).to_owned());
+        names.collect()
     }
 
-    /// The units of a length or an angle and of the force along it.
-    fn kind(&self, index: CoordinateId) -> Option<[&'static str; 2]> {
-        let dimension = self.dimension(index);
+    /// The units of a length or an angle and of the force along it; an angle may have the unit 1.
+    pub(super) fn units(&self, q: CoordinateId) -> Option<[&'static str; 2]> {
+        let dimension = self.mechanism.coordinates[q].label.unit.dimension;
         if dimension == Dimension::LENGTH {
-            Some(["m", "N"])
+            Some(LENGTH)
         } else {
-            dimension.is_none().then_some(["rad", "N*m"])
+            dimension.is_none().then_some(ANGLE)
         }
     }
 
-    fn coordinate(&self, index: CoordinateId) -> Site {
-        let label = &self.mechanism.coordinates[index].label;
-        let [unit, force] = self.kind(index).unwrap_or(["rad", "N*m"]);
-        let rate = self.scales.rates[index.index()];
+    fn name(&self, q: CoordinateId) -> &str {
+        &self.mechanism.coordinates[q].label.name
+    }
+
+    fn coordinate(&self, q: CoordinateId) -> Site {
+        let [unit, force] = self.units(q).unwrap_or(ANGLE);
         let mut words = vec![
             ("unit", unit.to_owned()),
             ("force", force.to_owned()),
-            ("typical_rate", number(rate)),
-            ("narrow_rate", number(self.scales.narrow[index.index()])),
+            ("typical_rate", number(self.scales.rates[q.index()])),
+            ("narrow_rate", number(self.scales.narrow[q.index()])),
         ];
         words.extend(self.across());
-        Site {
-            name: label.name.clone(),
-            index: index.index(),
-            words,
-            ..Site::default()
-        }
+        Site::new(self.name(q), q.index(), words)
     }
 
-    fn body(&self, index: BodyId) -> Site {
-        let body = &self.mechanism.bodies[index];
-        let centre = &self.mechanism.points[body.centre].name;
-        let velocity = |axis: &str| format!("velocity({centre}, {axis})");
-        let frame = body
-            .frame
-            .map(|frame| self.mechanism.frames[frame].name.clone());
-        Site {
-            name: body.name.clone(),
-            index: index.index(),
-            words: vec![
-                ("centre", centre.clone()),
-                ("frame", frame.unwrap_or_else(|| "ground".to_owned())),
-                ("speed", format!("smooth_abs(speed({centre}), 0.001 [m/s])")),
-                ("velocity_x", velocity("x")),
-                ("velocity_y", velocity("y")),
-                ("velocity_z", velocity("z")),
-            ],
-            placed_along: self.placed_along(index),
-            ..Site::default()
-        }
-    }
-
-    /// A body, with its size.
-    fn rigid_body(&self, index: BodyId) -> Site {
-        let extent = Extent::of(self.mechanism, index);
-        let mut site = self.body(index);
-        let [x, y, z] = extent.away.map(number);
-        site.words.extend([
-            ("away_x", x),
-            ("away_y", y),
-            ("away_z", z),
-            ("reach", number(extent.reach)),
-        ]);
-        site
-    }
-
-    /// Axes of the frame of a body along which parameters give its centre: an error there is one of a
-    /// parameter.
-    fn placed_along(&self, index: BodyId) -> Vec<&'static str> {
-        let body = &self.mechanism.bodies[index];
-        let centre = &self.mechanism.points[body.centre];
-        if Some(centre.frame) != body.frame {
-            return Vec::new();
-        }
-        let is_zero = |expr: &Expr| matches!(&expr.kind, ExprKind::Number(n) if n.is_zero());
-        let axes = ["x", "y", "z"].into_iter().zip(&centre.at);
-        axes.filter(|(_, at)| !is_zero(at))
-            .map(|(axis, _)| axis)
-            .collect()
-    }
-
-    fn gravity(&self) -> Option<Site> {
+    pub(super) fn gravity(&self) -> Option<Site> {
         let mut loads = self.mechanism.loads.iter();
         let gravity = loads.find_map(|load| match &load.kind {
             LoadKind::Gravity { acceleration, .. } => Some(acceleration),
             _ => None,
         })?;
+        let written = match &gravity.kind {
+            ExprKind::Quantity(Quantity::Parameter(p)) => {
+                self.mechanism.parameters[*p].label.name.clone()
+            }
+            ExprKind::Number(n) if !n.is_zero() => format!("{} [m/s^2]", n.to_f64()?),
+            _ => return None,
+        };
         let mut words = self.across();
-        words.push(("gravity", self.written(gravity, "m/s^2")?));
-        Some(Site {
-            name: "gravity".to_owned(),
-            index: 0,
-            words,
-            ..Site::default()
-        })
+        words.push(("gravity", written));
+        Some(Site::new("gravity", 0, words))
     }
 
     /// Axes of the ground across the weight.
-    fn across(&self) -> Vec<(&'static str, String)> {
+    fn across(&self) -> Vec<Word> {
         let down = self.mechanism.down().unwrap_or([0, 0, -1]);
         let across: Vec<usize> = (0..3).filter(|&axis| down[axis] == 0).collect();
-        let letter = |place: usize| ["x", "y", "z"][across[place]].to_owned();
+        let letter = |place: usize| AXES[across[place]].to_owned();
         let component = |axis: usize| if across[0] == axis { "1" } else { "0" }.to_owned();
         vec![
             ("across_1", letter(0)),
@@ -509,45 +349,41 @@ impl<'m> Sites<'m> {
         ]
     }
 
-    fn parameter(&self, index: ParameterId) -> Site {
-        Site {
-            name: self.mechanism.parameters[index].label.name.clone(),
-            index: index.index(),
-            words: Vec::new(),
-            ..Site::default()
-        }
+    pub(super) fn parameters(&self) -> Vec<Site> {
+        let site = |&index: &usize| {
+            let parameter = &self.mechanism.parameters[ParameterId::new(index)];
+            Site::new(&parameter.label.name, index, Vec::new())
+        };
+        self.scales.uncertain.iter().map(site).collect()
     }
 
-    fn input(&self, index: InputId) -> Site {
-        let label = &self.mechanism.inputs[index].label;
-        let largest = self.scales.largest[index.index()];
-        // Numbers of a fragment are in SI, and so must be its unit.
-        let unit = if label.unit.is_si() {
-            label.unit.text.clone()
-        } else {
-            Unit::si(label.unit.dimension).text
-        };
-        Site {
-            name: label.name.clone(),
-            index: index.index(),
-            words: vec![
+    pub(super) fn channels(&self) -> Vec<Site> {
+        let columns = self.scales.channels.iter().enumerate();
+        let site = |(index, column): (usize, &String)| Site::new(column, index, Vec::new());
+        columns.map(site).collect()
+    }
+
+    pub(super) fn inputs(&self) -> Vec<Site> {
+        let inputs = self.mechanism.inputs.iter().zip(&self.scales.largest);
+        let used = inputs
+            .enumerate()
+            .filter(|(_, (_, largest))| **largest > 0.0);
+        let site = |(index, (input, &largest)): (usize, (&Input, &f64))| {
+            let Label { name, unit, .. } = &input.label;
+            // Numbers of a fragment are in SI, and so must be its unit.
+            let unit = if unit.is_si() {
+                unit.text.clone()
+            } else {
+                Unit::si(unit.dimension).text
+            };
+            let words = vec![
                 ("unit", unit),
                 ("largest", number(largest)),
                 ("narrow", number(NARROW * largest)),
-            ],
-            ..Site::default()
-        }
-    }
-
-    /// A parameter or a number, as an expression in the language of the spec.
-    fn written(&self, expr: &Expr, unit: &str) -> Option<String> {
-        match &expr.kind {
-            ExprKind::Quantity(Quantity::Parameter(p)) => {
-                Some(self.mechanism.parameters[*p].label.name.clone())
-            }
-            ExprKind::Number(n) if !n.is_zero() => Some(format!("{} [{unit}]", n.to_f64()?)),
-            _ => None,
-        }
+            ];
+            Site::new(name, index, words)
+        };
+        used.map(site).collect()
     }
 }
 
@@ -575,17 +411,7 @@ pub(crate) fn driven(mechanism: &Mechanism) -> Vec<CoordinateId> {
 }
 
 fn mentions(expr: &Expr, quantity: Quantity) -> bool {
-    match &expr.kind {
-        ExprKind::Number(_) => false,
-        ExprKind::Quantity(own) => *own == quantity,
-        ExprKind::Negate(a) => mentions(a, quantity),
-        ExprKind::Binary(_, a, b) => mentions(a, quantity) || mentions(b, quantity),
-        ExprKind::Call(_, parts) => parts.iter().any(|part| mentions(part, quantity)),
-        ExprKind::Choice {
-            compared, branches, ..
-        } => {
-            let mut parts = compared.iter().chain(branches.iter());
-            parts.any(|part| mentions(part, quantity))
-        }
-    }
+    let mut is_mentioned = false;
+    expr.visit(&mut |own| is_mentioned |= own == quantity);
+    is_mentioned
 }

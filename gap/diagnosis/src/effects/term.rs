@@ -1,6 +1,6 @@
 //! A term that an effect adds to a quantity of the spec wherever that acts.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use appell_spec::compose::Composition;
 use serde::{Deserialize, Serialize};
@@ -46,18 +46,18 @@ impl Term {
         spec: &mut Composition,
         mut stated: Option<&mut Composition>,
     ) {
-        let of = |term: &&Self| (term.quantity.clone(), term.in_geometry);
-        let quantities: BTreeSet<(String, bool)> = terms.iter().map(of).collect();
-        for (quantity, in_geometry) in quantities {
-            let own = terms.iter().filter(|own| own.quantity == quantity);
-            let own = own.filter(|own| own.in_geometry == in_geometry);
-            let added = own.map(|own| own.adds.as_str());
-            let sum: Vec<&str> = std::iter::once(&*quantity).chain(added).collect();
-            let sum = sum.join(" + ");
+        let mut sums: BTreeMap<(&str, bool), String> = BTreeMap::new();
+        for term in terms {
+            let sum = sums.entry((&term.quantity, term.in_geometry));
+            let sum = sum.or_insert_with(|| term.quantity.clone());
+            *sum += " + ";
+            *sum += &term.adds;
+        }
+        for ((quantity, in_geometry), sum) in sums {
             let sections = if in_geometry { GEOMETRY } else { ACTING };
-            spec.substitute(&sections, &quantity, &sum);
+            spec.substitute(&sections, quantity, &sum);
             if let Some(stated) = stated.as_mut().filter(|_| !in_geometry) {
-                stated.substitute(&["definitions"], &quantity, &sum);
+                stated.substitute(&["definitions"], quantity, &sum);
             }
         }
     }

@@ -12,11 +12,6 @@ const LONGEST_DELAY: f64 = 0.25;
 /// Largest time constant in s.
 const LONGEST_LAG: f64 = 10.0;
 
-/// Additions to inputs.
-const OF_INPUTS: [&str; 2] = ["lag", "delay"];
-/// Additions to channels.
-const OF_CHANNELS: [&str; 3] = ["bias", "scale", "delay"];
-
 #[derive(Clone, Copy)]
 enum Kind {
     Lag,
@@ -25,6 +20,15 @@ enum Kind {
     Scale,
     SensorDelay,
 }
+
+/// Additions to inputs.
+const OF_INPUTS: [(&str, Kind); 2] = [("lag", Kind::Lag), ("delay", Kind::InputDelay)];
+/// Additions to channels.
+const OF_CHANNELS: [(&str, Kind); 3] = [
+    ("bias", Kind::Bias),
+    ("scale", Kind::Scale),
+    ("delay", Kind::SensorDelay),
+];
 
 /// One of them.
 pub(crate) struct Addition {
@@ -47,18 +51,15 @@ pub(super) fn named(
     let inputs = &inputs[..info.declared_inputs];
     let measured = set.measured(info);
     let columns: Vec<&str> = measured.iter().map(|(c, _)| c.column.as_str()).collect();
+    let all = [(inputs, &OF_INPUTS[..]), (columns.as_slice(), &OF_CHANNELS)];
     let find = |name: &String| {
         let (owner, what) = name.rsplit_once('.')?;
         let owner = set.in_spec(owner);
-        let place = |list: &[&str]| list.iter().position(|own| *own == owner);
-        let (kind, index) = match (what, place(inputs), place(&columns)) {
-            ("lag", Some(input), _) => (Kind::Lag, input),
-            ("delay", Some(input), _) => (Kind::InputDelay, input),
-            ("bias", _, Some(channel)) => (Kind::Bias, channel),
-            ("scale", _, Some(channel)) => (Kind::Scale, channel),
-            ("delay", _, Some(channel)) => (Kind::SensorDelay, channel),
-            _ => return None,
-        };
+        let (kind, index) = all.iter().find_map(|(owners, kinds)| {
+            let index = owners.iter().position(|own| *own == owner)?;
+            let (_, kind) = kinds.iter().find(|(own, _)| *own == what)?;
+            Some((*kind, index))
+        })?;
         let unit = match kind {
             Kind::Lag | Kind::InputDelay | Kind::SensorDelay => ("s".to_owned(), 1.0),
             Kind::Scale => ("1".to_owned(), 1.0),
@@ -67,29 +68,21 @@ pub(super) fn named(
                 (unit.text.clone(), unit.scale)
             }
         };
-        let name = name.clone();
         Some(Addition {
-            name,
+            name: name.clone(),
             kind,
             index,
             unit,
         })
     };
-    let known = || {
-        let of = |owners: &[&str], what: &[&str]| -> Vec<String> {
-            let pairs = owners
-                .iter()
-                .flat_map(|owner| what.iter().map(move |what| (owner, what)));
-            pairs
-                .map(|(owner, what)| format!("{owner}.{what}"))
-                .collect()
-        };
-        [of(inputs, &OF_INPUTS), of(&columns, &OF_CHANNELS)].concat()
-    };
+    let known = all.iter().flat_map(|(owners, kinds)| {
+        let names = |owner| kinds.iter().map(move |(what, _)| format!("{owner}.{what}"));
+        owners.iter().flat_map(names)
+    });
     let found = |name| {
         find(name).ok_or_else(|| IdentifyError::UnknownAddition {
             name: name.clone(),
-            known: known(),
+            known: known.clone().collect(),
         })
     };
     names.iter().map(found).collect()
@@ -125,21 +118,30 @@ impl Addition {
     pub(super) fn free(&self, estimation: &Estimation<'_>, runs: &[Run]) -> (Free, Quantity) {
         let setup = estimation.setup();
         let place = |list: &[usize]| list.iter().position(|own| *own == self.index);
-        let unknown = match self.kind {
-            Kind::Lag => Unknown::Lag(place(&setup.lagging).unwrap_or(0)),
-            Kind::InputDelay => Unknown::InputDelay(place(&setup.delayed).unwrap_or(0)),
-            Kind::Bias => Unknown::Bias(self.index),
-            Kind::Scale => Unknown::Scale(self.index),
-            Kind::SensorDelay => Unknown::SensorDelay(self.index),
-        };
         // A lag shorter than the steps has no effect and makes the equations stiff.
         let steps = runs.iter().map(|run| run.sampling.step);
         let step = steps.fold(0.0, f64::max).min(setup.longest_step);
-        let (value, range) = match self.kind {
-            Kind::Lag => (step, [step, LONGEST_LAG]),
-            Kind::InputDelay | Kind::SensorDelay => (0.0, [0.0, LONGEST_DELAY]),
-            Kind::Bias => (0.0, [f64::NEG_INFINITY, f64::INFINITY]),
-            Kind::Scale => (1.0, [f64::MIN_POSITIVE, f64::INFINITY]),
+        let index = self.index;
+        let (unknown, value, range) = match self.kind {
+            Kind::Lag => {
+                let lag = Unknown::Lag(place(&setup.lagging).unwrap_or(0));
+                (lag, step, [step, LONGEST_LAG])
+            }
+            Kind::InputDelay => {
+                let delay = Unknown::InputDelay(place(&setup.delayed).unwrap_or(0));
+                (delay, 0.0, [0.0, LONGEST_DELAY])
+            }
+            Kind::SensorDelay => (Unknown::SensorDelay(index), 0.0, [0.0, LONGEST_DELAY]),
+            Kind::Bias => (
+                Unknown::Bias(index),
+                0.0,
+                [f64::NEG_INFINITY, f64::INFINITY],
+            ),
+            Kind::Scale => (
+                Unknown::Scale(index),
+                1.0,
+                [f64::MIN_POSITIVE, f64::INFINITY],
+            ),
         };
         let (unit, scale) = self.unit.clone();
         let quantity = Quantity {

@@ -142,28 +142,26 @@ impl Answer {
                 0.0
             }
         });
-        let level = |unknown, name: String| -> Result<Level, IdentifyError> {
-            let place = layout.place(unknown)?;
-            let [nominal, fitted] = [nominal, fit].map(|fit| fit.values[place]);
-            Ok(Level {
-                name,
-                nominal,
-                fitted,
-            })
+        let levels = |names: &[String], of: fn(usize) -> Unknown| {
+            let levels = names.iter().enumerate().map(|(index, name)| {
+                let place = layout.place(of(index))?;
+                Ok(Level {
+                    name: name.clone(),
+                    nominal: nominal.values[place],
+                    fitted: fit.values[place],
+                })
+            });
+            levels.collect::<Result<Vec<Level>, IdentifyError>>()
         };
         let measured = set.measured(info);
         let columns: Vec<String> = measured.iter().map(|(c, _)| c.column.clone()).collect();
-        let noise = columns.iter().enumerate();
-        let speeds = info.states[..info.speeds].iter().enumerate();
+        let speeds = info.speed_quantities().iter();
+        let speeds: Vec<String> = speeds.map(|speed| speed.name.to_string()).collect();
         Ok(Self {
             is_optimum: fit.is_optimum(),
             combinations: combinations(&sensitivity, &problem.wanted, fit.coordinates.as_slice()),
-            noise: noise
-                .map(|(index, column)| level(Unknown::Noise(index), column.clone()))
-                .collect::<Result<_, _>>()?,
-            disturbances: speeds
-                .map(|(index, speed)| level(Unknown::Disturbance(index), speed.name.to_string()))
-                .collect::<Result<_, _>>()?,
+            noise: levels(&columns, Unknown::Noise)?,
+            disturbances: levels(&speeds, Unknown::Disturbance)?,
             log_likelihoods: [nominal.log_likelihood, fit.log_likelihood],
             whiteness: whiteness(estimation, fit, &columns)?,
             repeatability: Vec::new(),
@@ -212,9 +210,9 @@ fn combinations(sensitivity: &Sensitivity, parameters: &[Free], coordinates: &[f
     });
     // A decomposition of the triangular factor is cheaper than one of all samples.
     let singular = Singular::of(&slopes.qr().r());
-    let known = singular.values.iter().enumerate();
-    let known = known.map(|(k, &value)| Known {
-        parts: singular.right.column(k).iter().copied().collect(),
+    let known = singular.values.iter().zip(singular.right.column_iter());
+    let known = known.map(|(&value, parts)| Known {
+        parts: parts.iter().copied().collect(),
         deviation: value.recip(),
     });
     known.collect()

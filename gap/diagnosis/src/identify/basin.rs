@@ -39,26 +39,12 @@ pub(super) struct Search<'p, 'e> {
 }
 
 /// Prediction errors of a model, of the channel with the largest one.
+#[derive(Default)]
 struct Missed {
     /// By free runs, relative to the recorded motion.
     of_motion: f64,
     /// A second ahead, relative to the noise of the sensor.
     of_noise: f64,
-}
-
-impl Missed {
-    const NOTHING: Self = Self {
-        of_motion: 0.0,
-        of_noise: 0.0,
-    };
-    const EVERYTHING: Self = Self {
-        of_motion: f64::INFINITY,
-        of_noise: f64::INFINITY,
-    };
-
-    fn is_little(&self) -> bool {
-        self.of_motion <= MISSED && self.of_noise <= MISSED_AHEAD
-    }
 }
 
 impl Search<'_, '_> {
@@ -80,7 +66,8 @@ impl Search<'_, '_> {
         }
         let is_enough = |fit: &&Fit| fit.is_optimum() || self.options.rough;
         let ended = found.as_ref().ok().filter(is_enough);
-        if self.missed(ended)?.is_little() {
+        let missed = self.missed(ended)?;
+        if missed.of_motion <= MISSED && missed.of_noise <= MISSED_AHEAD {
             return found;
         }
         stage("fitting with little process noise");
@@ -169,12 +156,13 @@ impl Search<'_, '_> {
     /// The prediction errors of a fitted model; infinite without one.
     fn missed(&self, fit: Option<&Fit>) -> Result<Missed, IdentifyError> {
         let Some(fit) = fit else {
-            return Ok(Missed::EVERYTHING);
+            return Ok(Missed {
+                of_motion: f64::INFINITY,
+                of_noise: f64::INFINITY,
+            });
         };
-        let recordings = self.estimation.recordings();
-        let layout = self.estimation.layout();
-        let mut sums = vec![Sums::default(); self.estimation.setup().channels.len()];
-        for (run, recording) in recordings.iter().enumerate() {
+        let mut runs = Vec::new();
+        for (run, recording) in self.estimation.recordings().iter().enumerate() {
             let predictions = |horizon: f64, origins: &[usize]| {
                 self.estimation
                     .predictions(&fit.values, run, horizon, origins)
@@ -182,46 +170,37 @@ impl Search<'_, '_> {
             let origin = recording.times().len() / KNOWN;
             let free_run = predictions(f64::INFINITY, &[origin])?;
             let ahead = predictions(AHEAD, &origins(recording, ORIGINS))?;
-            for (channel, sums) in sums.iter_mut().enumerate() {
-                let own = |one: &&Predicted| one.channel == channel;
+            runs.push((recording, free_run, ahead));
+        }
+        let mut missed = Missed::default();
+        for channel in 0..self.estimation.setup().channels.len() {
+            let own = |one: &&Predicted| one.channel == channel;
+            let squares = |list: &[Predicted]| -> f64 {
+                list.iter()
+                    .filter(own)
+                    .map(|one| one.residual.powi(2))
+                    .sum()
+            };
+            // Sums of squares: of the recorded motion about its mean, and of the errors.
+            let (mut motion, mut of_free_run, mut of_ahead, mut count) = (0.0, 0.0, 0.0, 0.0);
+            for (recording, free_run, ahead) in &runs {
                 let values = free_run.iter().filter(own);
                 let values = values.map(|one| recording.measured(one.row)[channel]);
-                let count = values.clone().count().max(1) as f64;
-                let mean = values.clone().sum::<f64>() / count;
-                let squares = |list: &[Predicted]| -> f64 {
-                    list.iter()
-                        .filter(own)
-                        .map(|one| one.residual.powi(2))
-                        .sum()
-                };
-                sums.motion += values.map(|value| (value - mean).powi(2)).sum::<f64>();
-                sums.free_run += squares(&free_run);
-                sums.ahead += squares(&ahead);
-                sums.count += ahead.iter().filter(own).count() as f64;
+                let mean = values.clone().sum::<f64>() / values.clone().count().max(1) as f64;
+                motion += values.map(|value| (value - mean).powi(2)).sum::<f64>();
+                of_free_run += squares(free_run);
+                of_ahead += squares(ahead);
+                count += ahead.iter().filter(own).count() as f64;
             }
-        }
-        let mut missed = Missed::NOTHING;
-        for (channel, sums) in sums.iter().enumerate() {
-            let noise = self.problem.start[layout.place(Unknown::Noise(channel))?];
-            let of_motion = relative(sums.free_run, sums.motion);
-            let of_noise = relative(sums.ahead, sums.count * noise.powi(2));
+            let noise = Unknown::Noise(channel);
+            let noise = self.problem.start[self.estimation.layout().place(noise)?];
+            let of_motion = relative(of_free_run, motion);
+            let of_noise = relative(of_ahead, count * noise.powi(2));
             missed.of_motion = missed.of_motion.max(of_motion);
             missed.of_noise = missed.of_noise.max(of_noise);
         }
         Ok(missed)
     }
-}
-
-/// Sums of squares of a channel over all runs.
-#[derive(Debug, Clone, Default)]
-struct Sums {
-    /// Of the recorded motion about its mean.
-    motion: f64,
-    /// Of the errors of free runs.
-    free_run: f64,
-    /// Of those a second ahead, and their count.
-    ahead: f64,
-    count: f64,
 }
 
 /// The root of a ratio of sums of squares, which may be empty or have overflowed.

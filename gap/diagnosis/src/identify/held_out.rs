@@ -1,10 +1,12 @@
 //! Prediction errors on held-out runs.
 
+use std::ops::Range;
+
 use appell_estimate::{Estimation, Predicted, Unknown};
 
 use super::IdentifyError;
 use super::drift::{self, Drift};
-use super::problem::begin;
+use super::problem::begun;
 use crate::held_out::{AHEAD, HORIZONS, origins};
 use appell_recordings::{DataSet, Part, Run};
 
@@ -62,36 +64,24 @@ impl<'a> Test<'a> {
         fits: [&[f64]; 2],
         drifts: &[Drift],
     ) -> Result<Self, IdentifyError> {
-        let (layout, channels) = (
-            estimation.layout(),
-            set.measured(estimation.setup().model.info()),
-        );
-        let first_run = layout.place(Unknown::Initial { run: 0, state: 0 })?;
-        let mut values = Vec::new();
-        for fit in fits {
-            let mut own = estimation.nominal();
-            // The values before those of the runs have the same indices.
-            own[..first_run].copy_from_slice(&fit[..first_run]);
-            begin(estimation, &mut own)?;
-            drift::begin(drifts, estimation, &mut own)?;
-            values.push(own);
-        }
+        let channels = set.measured(estimation.setup().model.info());
+        let carried = |fit: &[f64]| -> Result<Vec<f64>, IdentifyError> {
+            let mut values = begun(estimation, fit)?;
+            drift::begin(drifts, estimation, &mut values)?;
+            Ok(values)
+        };
         let noise = (0..channels.len()).map(|channel| {
-            let place = layout.place(Unknown::Noise(channel))?;
+            let place = estimation.layout().place(Unknown::Noise(channel))?;
             Ok(fits[1][place])
         });
-        let noise = noise.collect::<Result<_, IdentifyError>>()?;
-        let [fitted, nominal] = [values.pop(), values.pop()].map(Option::unwrap_or_default);
         Ok(Self {
-            runs: set
-                .runs
-                .iter()
+            runs: (set.runs.iter())
                 .filter(|run| run.part == Part::Test)
                 .collect(),
             columns: channels.iter().map(|(c, _)| c.column.clone()).collect(),
             estimation,
-            values: [nominal, fitted],
-            noise,
+            values: [carried(fits[0])?, carried(fits[1])?],
+            noise: noise.collect::<Result<_, IdentifyError>>()?,
         })
     }
 
@@ -101,16 +91,17 @@ impl<'a> Test<'a> {
         for horizon in HORIZONS {
             let [nominal, fitted] = &self.values;
             let (nominal, fitted) = (self.sums(nominal, horizon)?, self.sums(fitted, horizon)?);
-            let all = (None, 0..self.columns.len());
-            let each = self.columns.iter().enumerate();
-            let each = each.map(|(index, column)| (Some(column.clone()), index..index + 1));
-            for (column, channels) in std::iter::once(all).chain(each) {
+            let mut add = |column: Option<&String>, channels: Range<usize>| {
                 errors.push(HeldOut {
                     horizon,
-                    column,
+                    column: column.cloned(),
                     nominal: root(&nominal[channels.clone()]),
                     fitted: root(&fitted[channels]),
                 });
+            };
+            add(None, 0..self.columns.len());
+            for (index, column) in self.columns.iter().enumerate() {
+                add(Some(column), index..index + 1);
             }
         }
         Ok(errors)
@@ -162,23 +153,20 @@ impl<'a> Test<'a> {
             let [nominal, fitted] = &self.values;
             let (nominal, fitted) = (predictions(nominal)?, predictions(fitted)?);
             for (channel, column) in self.columns.iter().enumerate() {
-                let own = |predicted: &[Predicted]| -> Vec<Predicted> {
-                    let own = predicted.iter().filter(|one| one.channel == channel);
-                    own.copied().collect()
-                };
-                let (nominal, fitted) = (own(&nominal), own(&fitted));
+                let is_own = |one: &&Predicted| one.channel == channel;
+                let nominal = nominal.iter().filter(is_own);
+                let fitted = fitted.iter().filter(is_own);
                 let value = |one: &Predicted| recording.measured(one.row)[channel];
                 let guess = |one: &Predicted| value(one) - one.residual;
                 traces.push(Trace {
                     run: run.name.clone(),
                     column: column.clone(),
-                    times: fitted
-                        .iter()
+                    times: (fitted.clone())
                         .map(|one| recording.times()[one.row])
                         .collect(),
-                    measured: fitted.iter().map(value).collect(),
-                    nominal: nominal.iter().map(guess).collect(),
-                    fitted: fitted.iter().map(guess).collect(),
+                    measured: fitted.clone().map(value).collect(),
+                    nominal: nominal.map(guess).collect(),
+                    fitted: fitted.map(guess).collect(),
                 });
             }
         }

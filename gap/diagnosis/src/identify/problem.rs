@@ -126,15 +126,14 @@ fn free_parameters(
     options: &Options,
 ) -> Result<(Vec<Free>, Vec<Quantity>), IdentifyError> {
     let has_tolerance = |&i: &usize| set.parameters[i].std.is_some_and(|std| std > 0.0);
-    let chosen: Vec<usize> = if let Some(names) = &options.free {
+    let mut chosen: Vec<usize> = if let Some(names) = &options.free {
         let names = names.iter().map(|name| parameter(set.in_spec(name), info));
         names.collect::<Result<_, _>>()?
     } else {
         (0..set.parameters.len()).filter(has_tolerance).collect()
     };
     // Drifting parameters are states.
-    let drifts = |index: &usize| drifts.iter().any(|own| own.parameter == *index);
-    let chosen: Vec<usize> = chosen.into_iter().filter(|index| !drifts(index)).collect();
+    chosen.retain(|index| drifts.iter().all(|own| own.parameter != *index));
     if chosen.is_empty()
         && options.drifting.is_empty()
         && options.additional.is_empty()
@@ -142,26 +141,22 @@ fn free_parameters(
     {
         return Err(IdentifyError::NothingFree);
     }
-    let free = |&index: &usize| {
-        let parameter = set.parameters[index];
-        let [low, high] = possible(info.parameters[index].range, parameter);
+    let chosen = chosen.into_iter().map(|index| {
+        let (parameter, own) = (set.parameters[index], &info.parameters[index]);
+        let [low, high] = possible(own.range, parameter);
         let free = Free::of(Unknown::Parameter(index)).within(low, high);
-        match parameter.std {
+        let free = match parameter.std {
             Some(std) if std > 0.0 => free.around(parameter.value, std),
             _ => free,
-        }
-    };
-    let quantity = |&index: &usize| {
-        let value = set.parameters[index].value;
-        let own = &info.parameters[index];
-        Quantity {
+        };
+        let quantity = Quantity {
             name: set.named(&own.name).into_owned().into(),
-            value,
+            value: parameter.value,
             ..own.clone()
-        }
-    };
-    let frees = chosen.iter().map(free).collect();
-    Ok((frees, chosen.iter().map(quantity).collect()))
+        };
+        (free, quantity)
+    });
+    Ok(chosen.unzip())
 }
 
 /// The initial noise of a channel, and its limits.
@@ -182,13 +177,11 @@ fn noise(channel: &Channel, index: usize, recordings: &[Recording]) -> (f64, Fre
 
 /// Standard deviation of a channel along all recordings.
 fn deviation(recordings: &[Recording], channel: usize) -> f64 {
-    let values: Vec<f64> = recordings
-        .iter()
-        .flat_map(|recording| {
-            (0..recording.times().len()).map(|row| recording.measured(row)[channel])
-        })
-        .filter(|value| !value.is_nan())
-        .collect();
+    let values = recordings.iter().flat_map(|recording| {
+        let rows = 0..recording.times().len();
+        rows.map(|row| recording.measured(row)[channel])
+    });
+    let values: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
@@ -217,6 +210,17 @@ pub(crate) fn begin(
         starts.push(start);
     }
     Ok(starts)
+}
+
+/// The values of a fit on other runs, with the states at the first rows of these.
+pub(super) fn begun(estimation: &Estimation<'_>, fit: &[f64]) -> Result<Vec<f64>, IdentifyError> {
+    let first_run = Unknown::Initial { run: 0, state: 0 };
+    let first_run = estimation.layout().place(first_run)?;
+    let mut values = estimation.nominal();
+    // The values before those of the runs have the same indices.
+    values[..first_run].copy_from_slice(&fit[..first_run]);
+    begin(estimation, &mut values)?;
+    Ok(values)
 }
 
 /// Root mean square of an input about its first value. The input before the first row is unknown to that extent, and

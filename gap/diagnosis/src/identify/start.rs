@@ -155,16 +155,8 @@ fn speeds(
             x[unknown] = if Some(unknown) == speed { 1.0 } else { 0.0 };
         }
         let mut rates = vec![0.0; info.state_len()];
-        let (x, p) = (&x, parameters);
-        model.rates(
-            At {
-                t: 0.0,
-                x,
-                u: &u,
-                p,
-            },
-            &mut rates,
-        );
+        let (t, x, u, p) = (0.0, &x, &u, parameters);
+        model.rates(At { t, x, u, p }, &mut rates);
         DVector::from_iterator(seen.len(), seen.iter().map(|(state, _)| rates[*state]))
     };
     let at_rest = velocities(None);
@@ -173,12 +165,11 @@ fn speeds(
         .map(|&speed| velocities(Some(speed)) - &at_rest)
         .collect();
     let inverse = DMatrix::from_columns(&columns).pseudo_inverse(1e-9).ok()?;
-    let first = DVector::from_iterator(seen.len(), seen.iter().map(|(_, slopes)| slopes.first));
-    let size = DVector::from_iterator(
-        seen.len(),
-        seen.iter()
-            .map(|(_, slopes)| slopes.size.max(CAREFUL * slopes.first.abs())),
-    );
+    let slopes = seen.iter().map(|(_, slopes)| slopes);
+    let sizes = slopes.clone();
+    let sizes = sizes.map(|own| own.size.max(CAREFUL * own.first.abs()));
+    let size = DVector::from_iterator(seen.len(), sizes);
+    let first = DVector::from_iterator(seen.len(), slopes.map(|own| own.first));
     let speeds = &inverse * (first - at_rest);
     // Pseudo-velocities that no slope determines stay uncertain.
     let floor = f64::EPSILON.sqrt();
@@ -217,13 +208,8 @@ pub(super) fn forces(
             }
             let mut u = vec![0.0; info.input_len()];
             u[..recording.input_len()].copy_from_slice(recording.inputs(row));
-            let at = At {
-                t: recording.times()[row],
-                x: &x,
-                u: &u,
-                p: parameters,
-            };
-            model.appell(at, &mut mass, &mut bias, &mut forces);
+            let (t, x, u, p) = (recording.times()[row], &x, &u, parameters);
+            model.appell(At { t, x, u, p }, &mut mass, &mut bias, &mut forces);
             count += 1.0;
             for i in 0..s {
                 squares[i] += forces[i].powi(2) + bias[i].powi(2);

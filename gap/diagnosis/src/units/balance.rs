@@ -2,8 +2,6 @@
 //! smoothed; the equations are compared with the accelerations, rates and outputs with those that follow from the
 //! coordinates.
 
-use std::ops::Range;
-
 use appell_estimate::inverse::{Record, Track};
 use appell_estimate::smoothing::angle::unwrap;
 use appell_recordings::{DataSet, Measured, Part, Role, Run};
@@ -26,7 +24,7 @@ type Speeds = Option<[DVector<f64>; 2]>;
 
 /// Recordings and equations.
 pub(super) struct Balance<'a> {
-    set: &'a DataSet,
+    pub(super) set: &'a DataSet,
     model: &'a dyn Model,
     p: Vec<f64>,
     /// Measured channels with their quantities.
@@ -98,10 +96,7 @@ impl<'a> Balance<'a> {
                 }
             }
         }
-        let missed = |miss: &Miss| {
-            let part = miss.error / miss.size;
-            part.is_finite().then_some(part)
-        };
+        let missed = |miss: &Miss| Some(miss.error / miss.size).filter(|part| part.is_finite());
         let mut missed: Vec<Option<f64>> = misses.iter().map(missed).collect();
         let measured = self.measured.iter();
         missed.extend(measured.map(|&(index, own)| self.outside(index, own, factors)));
@@ -141,11 +136,12 @@ impl<'a> Balance<'a> {
 
     /// Means of the inputs over an interval of time.
     fn inputs(&self, run: &Run, [from, to]: [f64; 2], factors: &[f64]) -> Vec<f64> {
-        let rows: Range<usize> =
-            run.times.partition_point(|t| *t < from)..run.times.partition_point(|t| *t < to);
+        let rows = [from, to].map(|end| run.times.partition_point(|t| *t < end));
         let mean = |channel: &Option<usize>| {
             let Some(channel) = *channel else { return 0.0 };
-            let values = run.values[channel].get(rows.clone()).unwrap_or_default();
+            let values = run.values[channel]
+                .get(rows[0]..rows[1])
+                .unwrap_or_default();
             let sum: f64 = values.iter().sum();
             factors[channel] * sum / values.len().max(1) as f64
         };
@@ -178,16 +174,18 @@ impl<'a> Balance<'a> {
         if speeds == 0 || coordinates.len() < speeds {
             return None;
         }
-        let q_dot = |w: &DVector<f64>| {
-            let rates = self.rates(t, q, w, u);
-            let rows = coordinates.iter().map(|(_, i)| rates[speeds + i]);
-            DVector::from_iterator(coordinates.len(), rows)
+        let of = |value: &dyn Fn(&(usize, usize)) -> f64| {
+            DVector::from_iterator(coordinates.len(), coordinates.iter().map(value))
         };
-        let tau = q_dot(&DVector::zeros(speeds));
+        let q_dot = |q: &[f64], w: &DVector<f64>| {
+            let rates = self.rates(t, q, w, u);
+            of(&|(_, i)| rates[speeds + i])
+        };
+        let tau = q_dot(q, &DVector::zeros(speeds));
         let columns: Vec<DVector<f64>> = (0..speeds)
             .map(|j| {
                 let unit = DVector::from_fn(speeds, |i, _| f64::from(u8::from(i == j)));
-                q_dot(&unit) - &tau
+                q_dot(q, &unit) - &tau
             })
             .collect();
         let svd = DMatrix::from_columns(&columns).svd(true, true);
@@ -197,8 +195,7 @@ impl<'a> Balance<'a> {
             return None;
         }
         let solve = |order: usize, less: &DVector<f64>| {
-            let known = coordinates.iter().map(|(row, _)| derivatives[order][*row]);
-            let known = DVector::from_iterator(coordinates.len(), known) - less;
+            let known = of(&|(row, _)| derivatives[order][*row]) - less;
             svd.solve(&known, 0.0).ok()
         };
         let w = solve(1, &tau)?;
@@ -208,16 +205,11 @@ impl<'a> Balance<'a> {
             .iter()
             .fold(1.0, |most: f64, rate| most.max(rate.abs()));
         let along = |side: f64| {
-            let moved = q
-                .iter()
-                .zip(&flow)
-                .map(|(q, rate)| q + side * STEP * rate / size);
-            let moved: Vec<f64> = moved.collect();
-            let rates = self.rates(t, &moved, &w, u);
-            DVector::from_iterator(
-                coordinates.len(),
-                coordinates.iter().map(|(_, i)| rates[speeds + i]),
-            )
+            let moved = q.iter().zip(&flow);
+            let moved: Vec<f64> = moved
+                .map(|(q, rate)| q + side * STEP * rate / size)
+                .collect();
+            q_dot(&moved, &w)
         };
         let carried = (along(1.0) - along(-1.0)) * (size / (2.0 * STEP));
         let w_dot = solve(2, &carried)?;
@@ -293,16 +285,14 @@ impl<'a> Balance<'a> {
             let value = value * factors[index];
             (low - value).max(value - high)
         };
-        if values().any(|value| distance(value) > FAR * width) {
-            return Some(FAR);
-        }
-        Some(
-            if values().all(|value| value.is_nan() || distance(value) <= 0.0) {
-                0.0
-            } else {
-                0.5
-            },
-        )
+        let farthest = values().map(distance).fold(0.0, f64::max);
+        Some(if farthest > FAR * width {
+            FAR
+        } else if farthest > 0.0 {
+            0.5
+        } else {
+            0.0
+        })
     }
 }
 

@@ -1,7 +1,7 @@
 //! A force with hysteresis, which depends on the travel since the last reversal.
 
 use super::trace::{Span, Trace};
-use crate::effects::{Hysteresis, Memory};
+use crate::effects::Memory;
 
 /// Number of presliding displacements that are tried.
 const WAYS: usize = 8;
@@ -37,11 +37,11 @@ pub(super) fn name(coordinate: &str) -> String {
 
 /// The law with its prior, from a first estimate of its size.
 pub(super) fn first(coordinate: &str, [way, apart]: [f64; 2], size: f64) -> Memory {
-    Memory::Hysteresis(Hysteresis {
+    Memory::Hysteresis {
         along: coordinate.to_owned(),
         force: [size, size],
         way: [way, apart],
-    })
+    }
 }
 
 /// The hysteresis state, -1 to 1: exact while the direction does not change.

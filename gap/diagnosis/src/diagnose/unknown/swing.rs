@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::trace::{Span, Trace};
-use crate::effects::{HiddenMass, Memory};
+use crate::effects::Memory;
 
 /// Number of natural frequencies that are tried.
 const FREQUENCIES: usize = 12;
@@ -31,12 +31,12 @@ pub(super) fn name(coordinate: &str, frequency: f64) -> String {
 
 /// The law with its prior, from a first estimate of its size.
 pub(super) fn first(coordinate: &str, [rate, apart]: [f64; 2], size: f64) -> Memory {
-    Memory::HiddenMass(HiddenMass {
+    Memory::HiddenMass {
         behind: coordinate.to_owned(),
         mass: [size, size],
         rate: [rate, apart],
         damping: [DAMPING, DAMPING],
-    })
+    }
 }
 
 /// Stretch of the spring, and its rate by the frequency, both as accelerations of the mass.

@@ -3,38 +3,30 @@
 use appell_spec::expr::{ExprKind, Quantity};
 use appell_spec::mechanism::{BodyId, Constraint, ConstraintKind};
 
-use super::{Site, Sites, number};
+use super::{AXES, Site, Sites, number};
 
 impl Sites<'_> {
     /// Bodies that roll, with their angular velocity about the normal of the ground.
-    pub(super) fn wheels(&self) -> Vec<Site> {
-        let rolling = self
-            .mechanism
-            .constraints
-            .iter()
-            .filter_map(|c| match c.kind {
-                ConstraintKind::Rolling { body, .. } => Some(body),
-                _ => None,
-            });
+    pub(in crate::effects) fn wheels(&self) -> Vec<Site> {
+        let constraints = self.mechanism.constraints.iter();
+        let rolling = constraints.filter_map(|constraint| match constraint.kind {
+            ConstraintKind::Rolling { body, .. } => Some(body),
+            _ => None,
+        });
         let mut bodies: Vec<BodyId> = rolling.collect();
         bodies.sort_unstable();
         bodies.dedup();
-        bodies
-            .into_iter()
-            .filter_map(|body| self.wheel(body))
-            .collect()
+        let wheels = bodies.into_iter().filter_map(|body| self.wheel(body));
+        wheels.collect()
     }
 
-    pub(super) fn contacts(&self) -> Vec<Site> {
+    pub(in crate::effects) fn contacts(&self) -> Vec<Site> {
         let constraints = self.mechanism.constraints.iter().enumerate();
         let rolls =
             |kind: &ConstraintKind| matches!(kind, ConstraintKind::Rolling { creep: None, .. });
         let contacts = constraints.filter(|(_, constraint)| rolls(&constraint.kind));
-        let site = |(index, constraint): (usize, &Constraint)| Site {
-            name: constraint.name.clone(),
-            index,
-            words: Vec::new(),
-            ..Site::default()
+        let site = |(index, constraint): (usize, &Constraint)| {
+            Site::new(&constraint.name, index, Vec::new())
         };
         contacts.map(site).collect()
     }
@@ -47,8 +39,8 @@ impl Sites<'_> {
             return None;
         };
         let name = &self.mechanism.frames[frame].name;
-        let axle = ["x", "y", "z"][turn.axis.index()];
-        let axes = down.iter().zip(["x", "y", "z"]);
+        let axle = AXES[turn.axis.index()];
+        let axes = down.iter().zip(AXES);
         let spin: Vec<String> = axes
             .filter(|(down, _)| **down != 0)
             .map(|(down, axis)| format!("({})*angular_velocity({name}, {axis})", -down))

@@ -114,7 +114,7 @@ use bench::Bench;
 use compare::Comparison;
 use held_out::{HeldOut, Leader};
 use horizon::Judged;
-use screen::Screen;
+use screen::screen;
 use stated::Stated;
 
 /// Version of the engine. Every change that affects a number of some report increments it, so that scores and
@@ -233,10 +233,11 @@ fn by_filter(
         Ok(laws) => (laws, None),
         Err(reason) => (Vec::new(), Some(Err(reason))),
     };
-    let fitted_laws = law::fitted(&laws, &bench, &test);
-    let measured = law::measured(fitted_laws, &mut comparison, &bench, rest).or(unwritten);
+    let measured = law::measured(&laws, &mut comparison, &bench, rest, &test).or(unwritten);
     stage("fitting the alternatives");
-    let alternatives = Alternative::all(&options.alternatives, fitted)?;
+    let alternatives = options.alternatives.iter();
+    let alternatives = alternatives.map(|spec| Alternative::new(fitted, spec));
+    let alternatives = alternatives.collect::<Result<Vec<_>, _>>()?;
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;
     stage("localising the gap");
     let mut place = localise::place(&bench, &comparison)?;
@@ -257,7 +258,10 @@ fn by_filter(
         .iter()
         .find(|rival| report.which[0].effects == [rival.name.clone()]);
     let rebound = match leading {
-        Some(rival) => Some((rival, HeldOut::of(&rival.rebound(&test)?, &rival.bench)?)),
+        Some(rival) => Some((
+            rival,
+            HeldOut::of(&test.rebound(&rival.bench.set.spec)?, &rival.bench)?,
+        )),
         None => None,
     };
     let known = outside.filter(|_| is_whole);
@@ -403,12 +407,12 @@ fn judged<'m>(
     stage("fitting the nominal model");
     let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
     stage("screening the effects");
-    let screen = Screen::of(&bench, &nominal)?;
+    let screened = screen(&bench, &nominal)?;
     stage("fitting the remaining effects");
     let windows = horizon::windows(whole, bench.is_of_robot)?;
     let levels = bench.levels(&nominal)?;
     let over = Bench::over(&windows, &bench, &levels)?;
-    let judged = horizon::judged(bench, screen, nominal, over, stage)?;
+    let judged = horizon::judged(bench, screened, nominal, over, stage)?;
     let mut judged = horizon::lengthened(judged, &levels, whole, stage)?;
     // An event is no process noise.
     if outside::rest(&mut judged, whole)?.is_some() {

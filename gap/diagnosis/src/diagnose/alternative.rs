@@ -17,14 +17,12 @@ use appell_recordings::{DataSet, Spec};
 
 /// A spec with the training runs.
 pub(super) struct Alternative {
-    spec: Spec,
     set: DataSet,
     model: EffectModel,
 }
 
 /// An alternative after its fit.
 pub(super) struct Rival<'a> {
-    spec: &'a Spec,
     /// Name of the hypothesis.
     pub(super) name: String,
     pub(super) bench: Bench<'a>,
@@ -37,21 +35,16 @@ pub(super) struct Rival<'a> {
 type Lost = (Vec<String>, String);
 
 impl Alternative {
-    /// All alternatives, with the training runs.
-    pub(super) fn all(specs: &[Spec], fitted: &DataSet) -> Result<Vec<Self>, DiagnoseError> {
-        specs.iter().map(|spec| Self::new(fitted, spec)).collect()
-    }
-
-    fn new(fitted: &DataSet, spec: &Spec) -> Result<Self, DiagnoseError> {
+    /// Of a spec, with the training runs.
+    pub(super) fn new(fitted: &DataSet, spec: &Spec) -> Result<Self, DiagnoseError> {
         Ok(Self {
-            spec: spec.clone(),
             set: fitted.rebound(spec)?,
             model: EffectModel::new(spec, Vec::new())?,
         })
     }
 
     /// Name of its hypothesis.
-    pub(super) fn name(&self) -> String {
+    fn name(&self) -> String {
         format!("alternative:{}", self.set.mechanism.name)
     }
 }
@@ -89,25 +82,20 @@ impl<'a> Rival<'a> {
         let mut bench = Bench::new(&alternative.set, &alternative.model)?;
         let mut fitted = bench.nominal()?;
         if main.is_over_windows() {
-            let windows = main.set.rebound(&alternative.spec)?;
+            let windows = main.set.rebound(&alternative.set.spec)?;
             let levels = bench.levels(&fitted)?;
-            bench = Bench::over(&windows, &bench, &levels)?.with_weight_of(main);
+            bench = Bench::over(&windows, &bench, &levels)?;
+            (bench.weight, bench.told) = (main.weight, main.told);
             fitted = bench.nominal()?;
         }
         let extra: Vec<bool> = own.iter().map(|column| !shared.contains(column)).collect();
         let of_extra = of_channels(&bench, &fitted, &extra)?;
         Ok(Self {
-            spec: &alternative.spec,
             name: alternative.name(),
             log: fitted.evidence.log() - of_extra,
             bench,
             fitted,
         })
-    }
-
-    /// Held-out runs, bound to it.
-    pub(super) fn rebound(&self, test: &DataSet) -> Result<DataSet, DiagnoseError> {
-        Ok(test.rebound(self.spec)?)
     }
 
     /// Noise of its channels as in the main model; infinite for channels that only it has.
@@ -128,9 +116,8 @@ impl<'a> Rival<'a> {
             value: one.value,
             std: one.std.unwrap_or(0.0),
             unit: one.unit,
-            without: None,
             is_determined: true,
-            yardstick: None,
+            ..Value::default()
         });
         Ok(values.collect())
     }

@@ -12,15 +12,16 @@ use super::prior::{names, of_count, prior};
 use super::report::{
     Detectable, Found, GapVerdict, Hint, Hypothesis, LAW, Left, Report, Value, Where,
 };
-use super::screen::Screen;
+use super::screen::Screened;
 use super::twins;
 use super::unknown;
 use super::yardstick::{Yardstick, Yardsticks};
 use crate::effects::{Acts, Candidate, EffectModel, Part};
 use appell_estimate::{Along, Unknown};
+use appell_recordings::DataSet;
 
 /// Size in its standard deviations that is detected with near certainty.
-pub(super) const DETECTABLE: f64 = 5.0;
+const DETECTABLE: f64 = 5.0;
 /// Number of hypotheses that are reported even if improbable.
 const TOLD: usize = 10;
 /// Limit of log odds, to avoid overflow.
@@ -53,7 +54,7 @@ impl Report {
 /// The report without the results on held-out runs.
 pub(super) fn assemble(
     bench: &Bench<'_>,
-    screen: &Screen,
+    screen: &[Screened],
     comparison: &Comparison,
     place: Where,
     rivals: &[Rival<'_>],
@@ -81,14 +82,11 @@ pub(super) fn assemble(
         }],
         None => found(bench.effects, &best.members),
     };
+    let mut screened: Vec<&Screened> = screen.iter().collect();
+    screened.sort_by_key(|one| one.candidate);
+    let deviations = screened.into_iter();
+    let deviations = deviations.filter_map(|one| Some((one.candidate, *one.deviations.first()?)));
     Ok(Report {
-        mechanism: bench.set.mechanism.name.clone(),
-        robot: bench.set.robot.as_ref().map(|robot| robot.format.word()),
-        locked: bench
-            .set
-            .robot
-            .as_ref()
-            .map_or_else(Vec::new, |robot| robot.locked.clone()),
         verdict,
         is_by_simulation: bench.is_over_windows(),
         place: if verdict == GapVerdict::NoGap || leads {
@@ -98,7 +96,7 @@ pub(super) fn assemble(
         },
         which: keep.unwrap_or(which),
         tied,
-        detectable: detectable(bench, screen),
+        detectable: detectable(bench.effects, &bench.set, deviations),
         failed: comparison
             .failed
             .iter()
@@ -108,7 +106,7 @@ pub(super) fn assemble(
         left: left(bench, comparison),
         independent: comparison.independent,
         found,
-        ..Report::default()
+        ..Report::of(&bench.set)
     })
 }
 
@@ -343,7 +341,7 @@ fn values_of(
                 )
             }
             (unknown, acts) if of_signal == Some(unknown) => match acts {
-                Acts::Bias(channel) => ("bias", channel_unit(bench, channel)),
+                Acts::Bias(channel) => ("bias", channel_unit(&bench.set, bench.effects, channel)),
                 Acts::Scale(_) => ("scale", "1".to_owned()),
                 Acts::Lag(_) | Acts::Slow(_) => ("time_constant", "s".to_owned()),
                 _ => ("delay", "s".to_owned()),
@@ -391,8 +389,8 @@ fn values_of(
 }
 
 /// SI unit of a measured channel.
-fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
-    let measured = bench.set.measured(bench.effects.info());
+fn channel_unit(set: &DataSet, model: &EffectModel, channel: usize) -> String {
+    let measured = set.measured(model.info());
     let Some((channel, _)) = measured.get(channel) else {
         return String::new();
     };
@@ -466,42 +464,47 @@ fn disturbances(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Vec<(Stri
         .collect()
 }
 
-/// The smallest detectable size of each effect.
-fn detectable(bench: &Bench<'_>, screen: &Screen) -> Vec<Detectable> {
-    let info = bench.effects.info();
+/// The smallest detectable size of each effect, from the standard deviation of the first size of candidates.
+pub(super) fn detectable(
+    model: &EffectModel,
+    set: &DataSet,
+    deviations: impl Iterator<Item = (usize, f64)>,
+) -> Vec<Detectable> {
+    let info = model.info();
     let mut told: Vec<Detectable> = Vec::new();
-    let mut list: Vec<_> = screen.list.iter().collect();
-    list.sort_by_key(|one| one.candidate);
-    for one in list {
-        let candidate = bench.candidate(one.candidate);
-        let name = candidate.name();
-        let Some(&deviation) = one.deviations.first() else {
-            continue;
-        };
-        if deviation <= 0.0 || told.iter().any(|own| own.effect == name) {
+    for (candidate, deviation) in deviations {
+        let candidate = model.candidate(candidate);
+        let effect = candidate.name();
+        if deviation <= 0.0 || told.iter().any(|own| own.effect == effect) {
             continue;
         }
-        let parameter = match candidate.acts {
-            Acts::Items => bench.own(candidate).first().map(|(index, _)| *index),
-            Acts::Parameter(index) => Some(index),
-            _ => None,
-        };
-        let (scale, unit) = match (candidate.acts, parameter) {
+        let (scale, unit) = match (candidate.acts, model.first_parameter(candidate)) {
             (_, Some(index)) => {
                 let quantity = &info.parameters[index];
                 (quantity.scale, quantity.unit.to_string())
             }
-            (Acts::Bias(channel), _) => (1.0, channel_unit(bench, channel)),
+            (Acts::Bias(channel), _) => (1.0, channel_unit(set, model, channel)),
             (Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_), _) => {
                 (1.0, "s".to_owned())
             }
             _ => (1.0, "1".to_owned()),
         };
         told.push(Detectable {
-            effect: name,
+            effect,
             smallest: DETECTABLE * deviation / scale,
             unit,
         });
     }
     told
+}
+
+impl EffectModel {
+    /// Index of the first parameter of an effect on the equations.
+    pub(super) fn first_parameter(&self, candidate: &Candidate) -> Option<usize> {
+        match candidate.acts {
+            Acts::Items => self.own(candidate).first().map(|(index, _)| *index),
+            Acts::Parameter(index) => Some(index),
+            _ => None,
+        }
+    }
 }

@@ -7,7 +7,7 @@ use appell_spec::mechanism::Interpolation;
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
-use super::bench::Bench;
+use super::bench::{Bench, SHARES};
 use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::report::{Interpolated, Tolerances};
@@ -117,6 +117,6 @@ fn log_likelihood(bench: &Bench<'_>, fitted: &Fitted, set: &DataSet) -> Result<f
         }
         stepwise.begin(&estimation, &mut start)?;
     }
-    let again = stepwise.fit_roughly(&fitted.members, &estimation, &start)?;
+    let again = stepwise.fit(SHARES, &fitted.members, &estimation, &start)?;
     Ok(again.fit.log_likelihood)
 }

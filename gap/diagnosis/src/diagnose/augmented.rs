@@ -13,7 +13,8 @@ use appell_estimate::{Estimation, Innovation, Recording, Setup, in_parallel};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use super::screen::{LEAST_GAIN, QUIET, Screened, directions, least, quieten};
+use super::screen::{LEAST_GAIN, QUIET, Screened, directions, least};
+use super::starts::scale_process_noise;
 use crate::effects::{Drive, Part};
 
 /// Sizes that are tried, relative to the range of the coordinate: most gears have less backlash than the largest, and
@@ -312,7 +313,7 @@ impl<'g, 'b> Grid<'g, 'b> {
             for &(place, value) in &own {
                 values[place] = value;
             }
-            quieten(&estimation, &mut values, levels)?;
+            scale_process_noise(&estimation, &mut values, levels)?;
             bench.hide(&[self.candidate], &estimation, &mut values)?;
             if let Ok(likelihood) = estimation.log_likelihood(&values) {
                 let gain = bench.weight * likelihood - log_likelihood;

@@ -4,8 +4,7 @@
 mod fits;
 
 use appell_estimate::{
-    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Layout, Measured, Recording, Setup,
-    Unknown,
+    Coordinate, Effort, Estimation, Free, Layout, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
 
@@ -58,9 +57,6 @@ const FINELY: f64 = 0.02;
 const SHAPE: f64 = 1.0;
 /// Relative prior standard deviation of a parameter whose error is a hypothesis.
 const WRONG: f64 = 0.5;
-
-/// An optimisation method.
-type Search = fn(&Estimation<'_>, &[f64], &[Free], Effort) -> Result<Fit, EstimateError>;
 
 /// The estimation problem common to all hypotheses.
 pub(super) struct Bench<'a> {

@@ -9,7 +9,7 @@
 use appell_estimate::Estimation;
 
 use super::DiagnoseError;
-use super::bench::Bench;
+use super::bench::{Bench, SHARES};
 use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::prediction::{Errors, Paired};
@@ -20,8 +20,8 @@ use crate::effects::{Acts, EffectModel};
 pub(super) struct Ends<'e> {
     /// Of the stated model.
     pub(super) stated: &'e Errors,
-    /// Of the model to which effects are added.
-    pub(super) base: &'e Errors,
+    /// Of the re-fitted model; effects are added to the better of both.
+    pub(super) refitted: &'e Errors,
     /// With all effects.
     pub(super) effects: &'e Errors,
     /// With all effects and a measured law.
@@ -46,7 +46,14 @@ pub(super) fn of(
         between.push(errors(&subset(effects, set))?);
     }
     let floor = ends.floor;
-    let mut models = vec![ends.stated, ends.base];
+    let means = Paired::of(&[ends.stated, ends.refitted]).means();
+    // If the fitted parameters predict worse than the stated ones, these are the base.
+    let base = if means[1] < means[0] {
+        ends.refitted
+    } else {
+        ends.stated
+    };
+    let mut models = vec![ends.stated, base];
     models.extend(&between);
     if count > 0 {
         models.push(ends.effects);
@@ -202,7 +209,7 @@ pub(super) fn with(
             start[index] = whole[index];
         }
     }
-    bench.fit_roughly(members, &estimation, &start)
+    bench.fit(SHARES, members, &estimation, &start)
 }
 
 #[cfg(test)]

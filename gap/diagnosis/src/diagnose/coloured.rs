@@ -13,6 +13,7 @@ use super::compare::Comparison;
 use super::evidence::{Evidence, Fitted};
 use super::feedback::for_kicks;
 use super::localise::force_unit;
+use super::starts::likeliest;
 use crate::effects::Candidate;
 
 /// Number of hypotheses that are fitted again, in addition to the nominal model.
@@ -139,25 +140,20 @@ fn begun(
 ) -> Result<Vec<f64>, DiagnoseError> {
     let layout = estimation.layout();
     let start = bench.carried_by_name(base, estimation);
-    let mut best: Option<(f64, Vec<f64>)> = None;
-    for rate in RATES {
+    let with_rate = |rate: f64| -> Result<Vec<f64>, DiagnoseError> {
         let mut values = start.clone();
-        for walk in walks {
-            let level = rate * walk.free.range[1] / LARGEST;
-            values[layout.place(walk.free.unknown)?] = level;
+        for &Walk { free, state } in walks {
+            let level = rate * free.range[1] / LARGEST;
+            values[layout.place(free.unknown)?] = level;
             for run in 0..estimation.recordings().len() {
-                let state = walk.state;
                 values[layout.place(Unknown::Initial { run, state })?] = 0.0;
                 // The standard deviation of its change in one second.
                 values[layout.place(Unknown::Spread { run, state })?] = level;
             }
         }
-        let Ok(likelihood) = estimation.log_likelihood(&values) else {
-            continue;
-        };
-        if best.as_ref().is_none_or(|(most, _)| likelihood > *most) {
-            best = Some((likelihood, values));
-        }
-    }
-    Ok(best.map_or(start, |(_, values)| values))
+        Ok(values)
+    };
+    let all = RATES.into_iter().map(with_rate);
+    let all = all.collect::<Result<Vec<_>, _>>()?;
+    Ok(likeliest(estimation, all).unwrap_or(start))
 }

@@ -13,6 +13,7 @@ use super::localise::force_unit;
 use super::prediction::followed;
 use super::report::{ForceHistory, MissingForce};
 use super::windows;
+use crate::effects::EffectModel;
 
 /// Largest number of intervals over all runs, the resolution of the plot.
 const PARTS: f64 = 160.0;
@@ -20,6 +21,55 @@ const PARTS: f64 = 160.0;
 const STEPS: usize = 2000;
 /// Averaging time relative to a window.
 const PART_TOGETHER: f64 = 0.1;
+
+/// The missing forces of a run.
+pub(super) struct OfRun {
+    pub(super) name: String,
+    /// Its first and last time in s.
+    pub(super) ends: [f64; 2],
+    /// Times with the forces of all equations.
+    pub(super) forces: Vec<(f64, Vec<f64>)>,
+}
+
+impl ForceHistory {
+    /// Of some runs, in parts that are no shorter than this time in s.
+    pub(super) fn of(model: &EffectModel, runs: Vec<OfRun>, shortest: f64) -> Self {
+        let info = model.info();
+        let length: f64 = runs.iter().map(|run| run.ends[1] - run.ends[0]).sum();
+        let part = shortest.max(length / PARTS);
+        let mut told = Vec::new();
+        let mut sizes: Vec<Vec<Vec<f64>>> = vec![Vec::new(); info.speeds];
+        for run in runs {
+            let [from, to] = run.ends;
+            // The number of intervals is small.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let parts = ((to - from) / part).ceil().max(1.0) as usize;
+            let first = sizes[0].len();
+            for own in &mut sizes {
+                own.resize(first + parts, Vec::new());
+            }
+            for (t, forces) in run.forces {
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                let index = ((t - from) / part) as usize;
+                for (own, force) in sizes.iter_mut().zip(&forces) {
+                    own[first + index.min(parts - 1)].push(force.abs());
+                }
+            }
+            told.push((run.name, from, parts));
+        }
+        let equations = sizes.into_iter().enumerate();
+        let equations = equations.map(|(equation, parts)| MissingForce {
+            name: info.states[equation].name.to_string(),
+            unit: force_unit(&model.mechanism, equation),
+            medians: parts.into_iter().map(median).collect(),
+        });
+        Self {
+            part,
+            runs: told,
+            equations: equations.collect(),
+        }
+    }
+}
 
 /// The history of all training runs.
 pub(super) fn force_history(
@@ -30,53 +80,29 @@ pub(super) fn force_history(
     let setup = bench.setup(&nominal.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let values = followed(bench, nominal, &estimation)?;
-    let info = setup.model.info();
-    let p = &nominal.fit.values[..info.parameter_len()];
-    let ends = |run: usize| {
-        let times = bench.recordings[run].times();
-        (times[0], times[times.len() - 1])
-    };
-    let length: f64 = (0..bench.recordings.len())
-        .map(ends)
-        .map(|(from, to)| to - from)
-        .sum();
-    let part = windows::length(bench).max(length / PARTS);
+    let p = &nominal.fit.values[..setup.model.info().parameter_len()];
     let mut runs = Vec::new();
-    let mut sizes: Vec<Vec<Vec<f64>>> = vec![Vec::new(); info.speeds];
     for (run, recording) in bench.recordings.iter().enumerate() {
-        let (from, to) = ends(run);
-        // The number of intervals is small.
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let parts = ((to - from) / part).ceil().max(1.0) as usize;
-        let first = sizes[0].len();
-        for own in &mut sizes {
-            own.resize(first + parts, Vec::new());
-        }
+        let times = recording.times();
         let states = estimation.smoothed(&values, run)?;
         let stride = states.len().div_ceil(STEPS).max(1);
         let several = together(bench, recording);
-        for row in (1..states.len()).step_by(stride) {
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let index = ((recording.times()[row] - from) / part) as usize;
+        let forces = (1..states.len()).step_by(stride).map(|row| {
             let rows = row..(row + several).min(states.len());
             let forces = mean_missing(setup.model, recording, &states, rows, p);
-            for (own, force) in sizes.iter_mut().zip(&forces) {
-                own[first + index.min(parts - 1)].push(force.abs());
-            }
-        }
-        runs.push((bench.set.runs[run].name.clone(), from, parts));
+            (times[row], forces)
+        });
+        runs.push(OfRun {
+            name: bench.set.runs[run].name.clone(),
+            ends: [times[0], times[times.len() - 1]],
+            forces: forces.collect(),
+        });
     }
-    let equations = sizes.into_iter().enumerate();
-    let equations = equations.map(|(equation, parts)| MissingForce {
-        name: info.states[equation].name.to_string(),
-        unit: force_unit(&bench.effects.mechanism, equation),
-        medians: parts.into_iter().map(median).collect(),
-    });
-    Ok(ForceHistory {
-        part,
+    Ok(ForceHistory::of(
+        bench.effects,
         runs,
-        equations: equations.collect(),
-    })
+        windows::length(bench),
+    ))
 }
 
 /// The median, which is robust to a jump of a channel, a large force in a single step. Zero without values.

@@ -14,7 +14,7 @@ use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::law::FittedLaw;
 use super::options::Options;
-use super::prediction::{self, Errors, Paired, noise, stated};
+use super::prediction::{Errors, Paired, noise, stated};
 use super::report::{ErrorOf, HowFar, Share};
 use appell_recordings::{DataSet, Part};
 
@@ -25,8 +25,6 @@ const PART: f64 = 0.5;
 /// Factor on the horizon for an unstable mechanism, for which the best hypothesis expects errors larger than the
 /// variation of the channels.
 const SHORTER: f64 = 0.1;
-/// Largest number of rows of a run from which predictions start.
-pub(super) const ORIGINS: usize = 75;
 
 /// The held-out runs.
 pub(super) struct HeldOut {
@@ -55,8 +53,8 @@ impl Leader<'_> {
     }
 
     pub(super) fn floor(&self, horizon: f64) -> Result<f64, DiagnoseError> {
-        let recordings = &self.runs.recordings;
-        prediction::floor(recordings, self.bench, self.fitted, &self.noise, horizon)
+        self.runs
+            .floor(self.bench, self.fitted, &self.noise, horizon)
     }
 }
 
@@ -105,8 +103,7 @@ impl HeldOut {
         let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, horizon);
         let stated = stated(bench, refitted)?;
         let before = others.map(|others| {
-            let own_floor =
-                |runs: &Self| prediction::floor(&runs.recordings, bench, &stated, &noise, horizon);
+            let own_floor = |runs: &Self| runs.floor(bench, &stated, &noise, horizon);
             let errors = others.errors(bench, &stated, &noise, horizon)?;
             // Expected errors depend on the motion.
             Ok::<f64, DiagnoseError>(errors.mean().sqrt() * own_floor(self)? / own_floor(others)?)
@@ -114,7 +111,6 @@ impl HeldOut {
         let stated = errors(&stated)?;
         let (refit, effect) = (errors(refitted)?, leader.errors(horizon)?);
         let paired = Paired::of(&[&stated, &refit, &effect]);
-        let means = paired.means();
         let budget = if let Some(name) = leader.alternative {
             budget::of_alternative(name, &paired, floor, tolerance)
         } else {
@@ -128,8 +124,7 @@ impl HeldOut {
             let effects = errors(best)?;
             let ends = Ends {
                 stated: &stated,
-                // If the fitted parameters predict worse than the stated ones, these are the base.
-                base: if means[1] < means[0] { &refit } else { &stated },
+                refitted: &refit,
                 effects: &effects,
                 law: law.as_ref(),
                 floor,
@@ -147,16 +142,6 @@ impl HeldOut {
             channels,
             ..HowFar::of(&paired, horizon, floor, budget, runs)
         }))
-    }
-
-    pub(super) fn errors(
-        &self,
-        bench: &Bench<'_>,
-        fitted: &Fitted,
-        noise: &[f64],
-        horizon: f64,
-    ) -> Result<Errors, DiagnoseError> {
-        prediction::errors(&self.recordings, bench, fitted, noise, horizon, ORIGINS)
     }
 }
 
@@ -213,11 +198,10 @@ impl HowFar {
             closed_ci95: paired.interval95(|means| closed(means[0], means[2])),
             closed_vs_refitted: closed(means[1], means[2]),
             budget,
-            channels: Vec::new(),
-            before: None,
             bettered_ci95: [0, 1].map(bettered),
             is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
             runs,
+            ..Self::default()
         }
     }
 }

@@ -17,7 +17,7 @@ use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::report::Window;
 use super::scales::{deviation, rates};
-use super::screen::Screen;
+use super::screen::{Screened, screen};
 use super::search::Look;
 use super::unknown::leftover;
 use crate::effects::Acts;
@@ -56,14 +56,14 @@ const EVENTS: f64 = 0.95;
 /// The hypotheses, with the estimation problem by which they are ranked.
 pub(super) struct Judged<'a> {
     pub(super) bench: Bench<'a>,
-    pub(super) screen: Screen,
+    pub(super) screen: Vec<Screened>,
     pub(super) comparison: Comparison,
     /// Windows of the training runs that the best hypothesis does not predict, once they are known.
     pub(super) outside: Option<Vec<Window>>,
 }
 
 impl<'a> Judged<'a> {
-    fn of(bench: Bench<'a>, screen: Screen, comparison: Comparison) -> Self {
+    fn of(bench: Bench<'a>, screen: Vec<Screened>, comparison: Comparison) -> Self {
         Self {
             bench,
             screen,
@@ -95,7 +95,7 @@ impl<'a> Judged<'a> {
 /// The ranking by one-step predictions if it is validated by simulations over windows, otherwise that by these.
 pub(super) fn judged<'a>(
     bench: Bench<'a>,
-    screen: Screen,
+    screen: Vec<Screened>,
     nominal: Fitted,
     over: Bench<'a>,
     stage: &mut impl FnMut(&'static str),
@@ -297,7 +297,7 @@ pub(super) fn lengthened<'a>(
         if over.left(gain) < IMMATERIAL {
             comparison.weigh_unknown(&over)?;
             return Ok(Judged {
-                screen: Screen::of(&over, comparison.nominal())?,
+                screen: screen(&over, comparison.nominal())?,
                 bench: over,
                 comparison,
                 outside: None,
@@ -329,9 +329,12 @@ fn nothing_left(
 }
 
 /// The ranking by simulations, with some known hypotheses.
-fn simulated(over: &Bench<'_>, known: Vec<Fitted>) -> Result<(Screen, Comparison), DiagnoseError> {
+fn simulated(
+    over: &Bench<'_>,
+    known: Vec<Fitted>,
+) -> Result<(Vec<Screened>, Comparison), DiagnoseError> {
     let nominal = over.nominal()?;
-    let screen = Screen::of(over, &nominal)?;
+    let screen = screen(over, &nominal)?;
     let comparison = Comparison::of(over, nominal, known, |_| Look::Holds)?;
     Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
@@ -397,8 +400,8 @@ impl Seen<'_, '_> {
         let again = self.again.entry(fitted.members.clone());
         let fit = || {
             let (gain, fitted) = self.over.fitted_again(self.bench, fitted).ok()?;
-            let screen = Screen::of(self.over, &fitted).ok();
-            let other = screen.as_ref().and_then(|screen| screen.list.first());
+            let others = screen(self.over, &fitted).unwrap_or_default();
+            let other = others.first();
             Some(Again {
                 gain,
                 by_others: other.map_or(0.0, |other| other.gain),

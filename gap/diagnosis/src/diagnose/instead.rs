@@ -69,7 +69,7 @@ impl Search<'_, '_> {
         for (_, unknown) in instead.members {
             start[estimation.layout().place(unknown)?] = instead.value;
         }
-        let mut fitted = bench.fit(&members, &estimation, &start)?;
+        let mut fitted = bench.fit(bench.effort(), &members, &estimation, &start)?;
         self.count_late(&mut fitted)?;
         Ok(Some(fitted))
     }

@@ -4,19 +4,20 @@
 //! effects; their amplitudes are fitted like other parameters, with a prior that admits discontinuous laws. The law can
 //! therefore predict runs and be written into a spec.
 
-mod deviation;
 mod hidden_mass;
 mod hysteresis;
 mod waves;
 
-use appell_estimate::{Along, Estimation};
+use appell_estimate::{Along, Estimation, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::calibration::{IMMATERIAL, TIED};
 use super::compare::Comparison;
 use super::evidence::Fitted;
+use super::forms::forms;
 use super::held_out::HeldOut;
+use super::localise::force_unit;
 use super::prediction::noise;
 use super::report::Law;
 use super::scales;
@@ -26,6 +27,24 @@ use super::unknown::{
 use crate::effects::{Candidate, EffectModel, Memory};
 use crate::held_out::AHEAD;
 use appell_recordings::{DataSet, Part};
+
+/// The course of a law over its variable.
+struct Course {
+    /// Unit of the force, or of what the factor multiplies.
+    unit: String,
+    variable: String,
+    variable_unit: String,
+    factor: Option<String>,
+    points: Vec<Point>,
+}
+
+/// A point of the course of a law.
+struct Point {
+    variable: f64,
+    force: f64,
+    /// Derivatives of the force by the coefficients.
+    slopes: Vec<f64>,
+}
 
 /// The equations with the law.
 pub(super) struct Lawful {
@@ -88,27 +107,21 @@ pub(super) fn lawful(
     Ok(all)
 }
 
-/// Fits each law together with the hypothesis to which it is added.
-pub(super) fn fitted<'l>(
-    laws: &'l [Lawful],
-    main: &Bench<'_>,
-    test: &DataSet,
-) -> Vec<Result<FittedLaw<'l>, DiagnoseError>> {
-    laws.iter().map(|law| law.fitted(main, test)).collect()
-}
-
-/// The law with the largest evidence, or the error if none could be fitted. `runs` are the training runs.
+/// Fits each law together with the hypothesis to which it is added: the one with the largest evidence, or the error if
+/// none could be fitted. `runs` are the training runs.
 pub(super) fn measured<'l>(
-    fitted: Vec<Result<FittedLaw<'l>, DiagnoseError>>,
+    laws: &'l [Lawful],
     comparison: &mut Comparison,
     bench: &Bench<'_>,
     runs: &DataSet,
+    test: &DataSet,
 ) -> Option<Result<FittedLaw<'l>, DiagnoseError>> {
     let evidence = |law: &Result<FittedLaw<'_>, DiagnoseError>| {
         let found = law.as_ref();
         found.map_or(f64::NEG_INFINITY, |law| law.log_evidence)
     };
-    let mut laws = fitted;
+    let laws = laws.iter().map(|law| law.fitted(bench, test));
+    let mut laws: Vec<Result<FittedLaw<'l>, DiagnoseError>> = laws.collect();
     laws.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
     let holds = |law: &Result<FittedLaw<'_>, DiagnoseError>, comparison: &mut Comparison| match law
     {
@@ -230,22 +243,59 @@ impl Lawful {
             start[place] = size;
         }
         bench.hide(&members, &estimation, &mut start)?;
-        let fitted = bench.fit_finely(&members, &estimation, &start)?;
+        let fitted = bench.fit(bench.finely(), &members, &estimation, &start)?;
         drop(estimation);
         let first = &self.left.first;
-        let law = match &self.kind {
-            Kind::Memory(Memory::HiddenMass(hidden)) => {
-                hidden_mass::law(main, first, &hidden.behind, &fitted, &places)
-            }
-            Kind::Memory(Memory::Hysteresis(hysteresis)) => {
-                hysteresis::law(main, first, &hysteresis.along, &fitted, &places)
-            }
+        let values: Vec<f64> = (places.iter())
+            .map(|&place| fitted.fit.values[place])
+            .collect();
+        let force = force_unit(&main.effects.mechanism, first.place);
+        let (course, forms) = match &self.kind {
+            Kind::Memory(Memory::HiddenMass(hidden)) => (
+                hidden_mass::course(&force, &hidden.behind, &values),
+                Vec::new(),
+            ),
+            Kind::Memory(Memory::Hysteresis(hysteresis)) => (
+                hysteresis::course(main, force, &hysteresis.along, &values),
+                Vec::new(),
+            ),
             Kind::Waves(series) => {
                 let dependence = dependence(main, first);
                 let dependence = dependence.ok_or(DiagnoseError::NothingToFit)?;
-                let base = &self.base;
-                waves::law(main, base, first, dependence, series, &fitted, &places)?
+                let course = waves::course(main, force, dependence, series, &values);
+                (course, forms(main, &self.base, dependence, first)?)
             }
+        };
+        let covariance = fitted.fit.covariance().ok();
+        let free = |place: &usize| {
+            let mut free = fitted.fit.free.iter();
+            free.position(|free| free.unknown == Unknown::Parameter(*place))
+        };
+        let free: Vec<Option<usize>> = places.iter().map(free).collect();
+        let deviation = |slopes: &[f64]| {
+            let mut variance = 0.0;
+            for (i, a) in free.iter().zip(slopes) {
+                for (j, b) in free.iter().zip(slopes) {
+                    if let (Some(i), Some(j), Some(covariance)) = (i, j, &covariance) {
+                        variance += a * b * covariance[(*i, *j)];
+                    }
+                }
+            }
+            variance.max(0.0).sqrt()
+        };
+        let points = course.points.iter();
+        let law = Law {
+            equation: main.effects.info().states[first.place].name.to_string(),
+            unit: course.unit,
+            depends_on: first.variable.clone(),
+            variable: course.variable,
+            variable_unit: course.variable_unit,
+            factor: course.factor,
+            curve: points
+                .map(|point| [point.variable, point.force, deviation(&point.slopes)])
+                .collect(),
+            log_bayes_factor: first.log_bayes_factor,
+            forms,
         };
         let gain = fitted.fit.log_posterior - self.base.fit.log_posterior;
         let first = self.left.log_bayes_factor - self.left.first.gain;

@@ -13,7 +13,7 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
 use super::report::{ShareOf, Where};
-use crate::effects::Acts;
+use crate::effects::{Acts, EffectModel};
 
 /// Number of points along the recordings.
 const PLACES: usize = 400;
@@ -24,7 +24,6 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     let Some(&first) = best.members.first() else {
         return Ok(Where::default());
     };
-    let domain = bench.candidate(first).family.domain();
     let setup = bench.setup(&best.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let (augmented, layout) = (estimation.setup().model, estimation.layout());
@@ -77,34 +76,55 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
         }
     }
     let gain = best.evidence.log_likelihood - comparison.nominal().evidence.log_likelihood;
-    let p_value = 1.0 - chi_squared_probability(2.0 * gain, 1.0);
     let mut energies = Vec::new();
     for i in 0..s {
         let level = values[layout.place(Unknown::Disturbance(i))?];
         let level = level.max(bench.negligible.get(i).copied().unwrap_or_default());
         energies.push(added[i] / level.powi(2).max(f64::MIN_POSITIVE));
     }
-    let whole: f64 = energies.iter().sum();
-    let mut equations: Vec<ShareOf> = (0..s)
-        .map(|i| ShareOf {
-            name: info.states[i].name.to_string(),
-            share: if whole > 0.0 {
-                energies[i] / whole
-            } else {
-                0.0
-            },
+    let added = Added {
+        squares: added,
+        energies,
+        count,
+        gain,
+    };
+    Ok(added.place(bench.effects, first))
+}
+
+/// Forces that a hypothesis adds to each equation.
+pub(super) struct Added {
+    /// Sums of their squares.
+    pub(super) squares: Vec<f64>,
+    /// The same relative to the noise of the equation.
+    pub(super) energies: Vec<f64>,
+    /// Number of forces.
+    pub(super) count: f64,
+    /// Gain in log likelihood by the hypothesis.
+    pub(super) gain: f64,
+}
+
+impl Added {
+    /// The equations by their shares; `first` is the first member of the hypothesis.
+    pub(super) fn place(&self, model: &EffectModel, first: usize) -> Where {
+        let info = model.info();
+        let p_value = 1.0 - chi_squared_probability(2.0 * self.gain, 1.0);
+        let whole: f64 = self.energies.iter().sum();
+        let equations = self.energies.iter().zip(&self.squares).enumerate();
+        let equations = equations.map(|(equation, (energy, square))| ShareOf {
+            name: info.states[equation].name.to_string(),
+            share: energy / whole.max(f64::MIN_POSITIVE),
             p_value,
-            rms: (added[i] / count.max(1.0)).sqrt(),
-            unit: force_unit(&bench.effects.mechanism, i),
-        })
-        .collect();
-    equations.sort_by(|a, b| b.share.total_cmp(&a.share));
-    Ok(Where {
-        domain,
-        equations,
-        windows: Vec::new(),
-        region: Vec::new(),
-    })
+            rms: (square / self.count.max(1.0)).sqrt(),
+            unit: force_unit(&model.mechanism, equation),
+        });
+        let mut equations: Vec<ShareOf> = equations.collect();
+        equations.sort_by(|a, b| b.share.total_cmp(&a.share));
+        Where {
+            domain: model.candidate(first).family.domain(),
+            equations,
+            ..Where::default()
+        }
+    }
 }
 
 /// SI unit of the force along a pseudo-velocity: a watt divided by its unit.

@@ -34,7 +34,7 @@ impl Comparison {
         let horizon = horizon.unwrap_or_else(|| held_out::horizon(&runs.recordings));
         let tolerance = options.tolerance.unwrap_or(IMMATERIAL);
         while let Some(fewer) = self.with_fewer(bench) {
-            let floor = prediction::floor(&runs.recordings, bench, self.best(), &noise, horizon)?;
+            let floor = runs.floor(bench, self.best(), &noise, horizon)?;
             let stated = stated(bench, self.nominal())?;
             let errors = |own| runs.errors(bench, own, &noise, horizon);
             let [stated, refitted] = [errors(&stated)?, errors(self.nominal())?];

@@ -1,10 +1,11 @@
 //! Fits of the nominal model.
 
-use appell_estimate::{Effort, Estimation, Fit, Unknown};
+use appell_estimate::{Effort, Estimation, Fit};
 
 use super::DiagnoseError;
-use super::bench::{Bench, ROUGHLY};
+use super::bench::{Bench, ROUGHLY, SHARES};
 use super::evidence::Fitted;
+use super::starts::scale_process_noise;
 
 /// Largest number of tenfold increases of the process noise if the filter diverges.
 const LOST: usize = 4;
@@ -24,9 +25,7 @@ impl Bench<'_> {
             if fitted.is_ok() {
                 break;
             }
-            for index in 0..setup.disturbances.len() {
-                start[estimation.layout().place(Unknown::Disturbance(index))?] *= 10.0;
-            }
+            scale_process_noise(&estimation, &mut start, 10.0)?;
             fitted = self.nominal_from(&estimation, &start);
         }
         fitted
@@ -43,16 +42,14 @@ impl Bench<'_> {
             steps: 0,
             ..ROUGHLY
         };
-        self.fit_by(Fit::quick, as_it_is, &[], &estimation, &levels)
+        self.fit(as_it_is, &[], &estimation, &levels)
     }
 
     /// Noise levels, or likelier ones that a search finds from less process noise: the rates of stiff servos may be taken
     /// for process noise or for measured ones, and a search does not cross from one to the other.
     fn quieter(&self, estimation: &Estimation<'_>, first: Fit) -> Result<Vec<f64>, DiagnoseError> {
         let mut start = first.values.clone();
-        for index in 0..estimation.setup().disturbances.len() {
-            start[estimation.layout().place(Unknown::Disturbance(index))?] *= QUIETER;
-        }
+        scale_process_noise(estimation, &mut start, QUIETER)?;
         let second = Fit::quick(estimation, &start, &self.problem.levels, ROUGHLY);
         Ok(match second {
             Ok(second) if second.log_likelihood > first.log_likelihood => second.values,
@@ -71,10 +68,10 @@ impl Bench<'_> {
         // One step ahead a robot needs its noise levels only.
         if self.is_of_robot && !self.is_over_windows() {
             let levels = self.quieter(estimation, levels)?;
-            return self.fit_roughly(&[], estimation, &levels);
+            return self.fit(SHARES, &[], estimation, &levels);
         }
         let levels = levels.values;
-        let fitted = self.fit(&[], estimation, &levels)?;
+        let fitted = self.fit(self.effort(), &[], estimation, &levels)?;
         if fitted.fit.is_optimum() || self.is_over_windows() {
             return Ok(fitted);
         }

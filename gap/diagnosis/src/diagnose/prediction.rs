@@ -7,15 +7,19 @@
 
 use std::collections::BTreeMap;
 
-use appell_estimate::{Estimation, Recording, Unknown};
+use appell_estimate::{Estimation, Unknown};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
+use super::held_out::HeldOut;
+use super::starts::scale_process_noise;
 use crate::held_out::origins;
 
+/// Largest number of rows of a run from which predictions start.
+const ORIGINS: usize = 75;
 /// Number of rows from which expected errors are computed.
 const EXPECTED_FROM: usize = 25;
 /// Largest number of tenfold increases of the process noise.
@@ -129,76 +133,79 @@ impl Paired {
     }
 }
 
-/// Errors of a fitted hypothesis on recordings, which may differ from the training runs.
-pub(super) fn errors(
-    recordings: &[Recording],
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    noise: &[f64],
-    horizon: f64,
-    most: usize,
-) -> Result<Errors, DiagnoseError> {
-    let setup = bench.setup(&fitted.members);
-    let estimation = Estimation::new(&setup, recordings)?;
-    let values = taken_over(bench, fitted, &estimation)?;
-    let mut errors = Errors::default();
-    let length = if horizon > 0.0 && horizon.is_finite() {
-        BLOCK * horizon
-    } else {
-        BLOCK_S
-    };
-    for (run, recording) in recordings.iter().enumerate() {
-        let mut origins = origins(recording, most);
-        if horizon.is_infinite() {
-            origins.truncate(1);
-        }
-        for one in estimation.predictions(&values, run, horizon, &origins)? {
-            if noise[one.channel].is_infinite() {
-                continue;
+impl HeldOut {
+    /// Errors of a fitted hypothesis, in units of the `noise` of each channel; where that is infinite they do not count.
+    pub(super) fn errors(
+        &self,
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+        noise: &[f64],
+        horizon: f64,
+    ) -> Result<Errors, DiagnoseError> {
+        let setup = bench.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let values = taken_over(bench, fitted, &estimation)?;
+        let mut errors = Errors::default();
+        let length = if horizon > 0.0 && horizon.is_finite() {
+            BLOCK * horizon
+        } else {
+            BLOCK_S
+        };
+        for (run, recording) in self.recordings.iter().enumerate() {
+            let mut origins = origins(recording, ORIGINS);
+            if horizon.is_infinite() {
+                origins.truncate(1);
             }
-            let block = (recording.times()[one.origin] - recording.times()[0]) / length;
-            // A count of blocks in memory.
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let block = block as usize;
-            let square = (one.residual / noise[one.channel]).powi(2);
-            errors.add([run, block], one.channel, square);
+            for one in estimation.predictions(&values, run, horizon, &origins)? {
+                if noise[one.channel].is_infinite() {
+                    continue;
+                }
+                let block = (recording.times()[one.origin] - recording.times()[0]) / length;
+                // A count of blocks in memory.
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                let block = block as usize;
+                let square = (one.residual / noise[one.channel]).powi(2);
+                errors.add([run, block], one.channel, square);
+            }
         }
+        Ok(errors)
     }
-    Ok(errors)
-}
 
-/// The expected error of a true hypothesis, root of the mean square.
-pub(super) fn floor(
-    recordings: &[Recording],
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    noise: &[f64],
-    horizon: f64,
-) -> Result<f64, DiagnoseError> {
-    if let Some(sensors) = bench.noise_of_sensors() {
-        let parts = sensors
-            .iter()
-            .zip(noise)
-            .filter(|(_, unit)| unit.is_finite());
-        let squares: Vec<f64> = parts
-            .map(|(sensor, unit)| (sensor / unit).powi(2))
-            .collect();
-        return Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt());
-    }
-    let setup = bench.setup(&fitted.members);
-    let estimation = Estimation::new(&setup, recordings)?;
-    let values = taken_over(bench, fitted, &estimation)?;
-    let (mut squares, mut count) = (0.0, 0.0_f64);
-    for (run, recording) in recordings.iter().enumerate() {
-        let origins = origins(recording, EXPECTED_FROM);
-        for (_, channel, variance) in estimation.expected_errors(&values, run, horizon, &origins)? {
-            if noise[channel].is_finite() {
-                squares += variance / noise[channel].powi(2);
-                count += 1.0;
+    /// The expected error of a true hypothesis, root of the mean square.
+    pub(super) fn floor(
+        &self,
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+        noise: &[f64],
+        horizon: f64,
+    ) -> Result<f64, DiagnoseError> {
+        if let Some(sensors) = bench.noise_of_sensors() {
+            let parts = sensors
+                .iter()
+                .zip(noise)
+                .filter(|(_, unit)| unit.is_finite());
+            let squares: Vec<f64> = parts
+                .map(|(sensor, unit)| (sensor / unit).powi(2))
+                .collect();
+            return Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt());
+        }
+        let setup = bench.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let values = taken_over(bench, fitted, &estimation)?;
+        let (mut squares, mut count) = (0.0, 0.0_f64);
+        for (run, recording) in self.recordings.iter().enumerate() {
+            let origins = origins(recording, EXPECTED_FROM);
+            for (_, channel, variance) in
+                estimation.expected_errors(&values, run, horizon, &origins)?
+            {
+                if noise[channel].is_finite() {
+                    squares += variance / noise[channel].powi(2);
+                    count += 1.0;
+                }
             }
         }
+        Ok((squares / count.max(1.0)).sqrt())
     }
-    Ok((squares / count.max(1.0)).sqrt())
 }
 
 /// The model with the parameters stated by the data set, and the noise levels of a fit.
@@ -234,9 +241,7 @@ pub(super) fn taken_over(
         if estimation.log_likelihood(&values).is_ok() {
             break;
         }
-        for index in 0..estimation.setup().disturbances.len() {
-            values[layout.place(Unknown::Disturbance(index))?] *= 10.0;
-        }
+        scale_process_noise(estimation, &mut values, 10.0)?;
     }
     Ok(values)
 }

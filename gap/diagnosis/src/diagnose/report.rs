@@ -1,5 +1,6 @@
 //! The gap report, with the names of its format.
 
+use appell_recordings::DataSet;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -21,7 +22,7 @@ pub(super) const LAW: &str = "law";
 pub(super) const REST: &str = "unexplained";
 
 /// A hypothesis with its probability.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Hypothesis {
     /// Names of its effects; none for the nominal model, `unknown` for none of the library.
     pub effects: Vec<String>,
@@ -43,10 +44,7 @@ impl Hypothesis {
         Self {
             effects: vec![UNKNOWN.to_owned()],
             probability,
-            same_as: None,
-            log_bayes_factor: None,
-            parameters: Vec::new(),
-            changes: None,
+            ..Self::default()
         }
     }
 
@@ -191,7 +189,7 @@ impl Share {
 }
 
 /// Prediction errors on held-out runs, in units of the noise.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the words of the contract")]
 pub struct HowFar {
     pub horizon_s: f64,
@@ -455,6 +453,17 @@ pub struct Report {
 }
 
 impl Report {
+    /// Without results, of a rig.
+    pub(super) fn of(set: &DataSet) -> Self {
+        let robot = set.robot.as_ref();
+        Self {
+            mechanism: set.mechanism.name.clone(),
+            robot: robot.map(|robot| robot.format.word()),
+            locked: robot.map_or_else(Vec::new, |robot| robot.locked.clone()),
+            ..Self::default()
+        }
+    }
+
     /// The most probable hypothesis of the library.
     pub fn leading(&self) -> Option<&Hypothesis> {
         self.which.iter().find(|one| !one.is_unknown())

@@ -53,71 +53,54 @@ pub(super) fn least(best: f64) -> f64 {
     LEAST_GAIN.max(LEAST_PART * best)
 }
 
-/// All candidates.
-#[derive(Debug, Clone)]
-pub(super) struct Screen {
-    /// The candidates, with the greatest gain first.
-    pub(super) list: Vec<Screened>,
+/// Screens all candidates that are not members of a fit, those with the greatest gain first.
+pub(super) fn screen(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>, DiagnoseError> {
+    let mut list = first_order(bench, fitted)?;
+    let best = list.first().map_or(0.0, |best| best.gain);
+    list.extend(augmented::screened(
+        bench,
+        fitted,
+        fitted.evidence.by_inputs,
+        best,
+    )?);
+    list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    Ok(list)
 }
 
-impl Screen {
-    /// Screens all candidates that are not members of a fit.
-    pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        let mut screen = Self::first_order(bench, fitted)?;
-        let best = screen.list.first().map_or(0.0, |best| best.gain);
-        let augmented = augmented::screened(bench, fitted, fitted.evidence.by_inputs, best)?;
-        screen.list.extend(augmented);
-        screen.list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        Ok(screen)
-    }
-
-    /// Screens all candidates without an additional coordinate.
-    fn first_order(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        let setup = bench.whole_setup(&fitted.members);
-        let estimation = Estimation::new(&setup, &bench.recordings)?;
-        let free = moving(&fitted.fit);
-        let (directions, own) = others(bench, fitted, &free);
-        let mut values = bench.carried(fitted, &estimation);
-        shapes(bench, &mut values, &fitted.members);
-        let tangent = bench
-            .input_innovations
-            .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
-        let normal = Normal::of(
-            &tangent,
-            &whitened(&tangent),
-            bench.weight,
-            &priors(&fitted.fit),
-        );
-        let columns = free.len()..directions.len();
-        let mut nuisances: Vec<usize> = (0..free.len()).collect();
-        let gram = normal.beside(&nuisances, columns.clone());
-        nuisances.extend(directions.len()..tangent.slopes.nrows());
-        let beyond = normal.beside(&nuisances, columns);
-        let for_kicks = fitted.evidence.by_inputs;
-        let all = in_parallel(own, |(candidate, columns)| {
-            let positive = positive(bench, candidate);
-            let one = screened(&gram, candidate, &columns, &positive)?;
-            let beyond = screened(&beyond, candidate, &columns, &positive);
-            let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
-            let by_inputs = (one.gain - beyond).clamp(0.0, for_kicks);
-            Some(one.beyond_inputs(by_inputs))
-        });
-        let mut list: Vec<Screened> = all.into_iter().flatten().collect();
-        list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        Ok(Self { list })
-    }
-}
-
-/// Multiplies the process noise among values.
-pub(super) fn quieten(
-    estimation: &Estimation<'_>,
-    values: &mut [f64],
-    levels: f64,
-) -> Result<(), DiagnoseError> {
-    for index in 0..estimation.setup().disturbances.len() {
-        values[estimation.layout().place(Unknown::Disturbance(index))?] *= levels;
-    }
-    Ok(())
+/// Screens all candidates without an additional coordinate.
+fn first_order(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>, DiagnoseError> {
+    let setup = bench.whole_setup(&fitted.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let free = moving(&fitted.fit);
+    let (directions, own) = others(bench, fitted, &free);
+    let mut values = bench.carried(fitted, &estimation);
+    shapes(bench, &mut values, &fitted.members);
+    let tangent = bench
+        .input_innovations
+        .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
+    let normal = Normal::of(
+        &tangent,
+        &whitened(&tangent),
+        bench.weight,
+        &priors(&fitted.fit),
+    );
+    let columns = free.len()..directions.len();
+    let mut nuisances: Vec<usize> = (0..free.len()).collect();
+    let gram = normal.beside(&nuisances, columns.clone());
+    nuisances.extend(directions.len()..tangent.slopes.nrows());
+    let beyond = normal.beside(&nuisances, columns);
+    let for_kicks = fitted.evidence.by_inputs;
+    let all = in_parallel(own, |(candidate, columns)| {
+        let positive = positive(bench, candidate);
+        let one = screened(&gram, candidate, &columns, &positive)?;
+        let beyond = screened(&beyond, candidate, &columns, &positive);
+        let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
+        let by_inputs = (one.gain - beyond).clamp(0.0, for_kicks);
+        Some(one.beyond_inputs(by_inputs))
+    });
+    let mut list: Vec<Screened> = all.into_iter().flatten().collect();
+    list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    Ok(list)
 }
 
 /// Candidates whose sensitivities about a fit are non-zero, but linearly dependent on those of its free parameters.

@@ -15,8 +15,8 @@ use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::initial::place;
 use super::prior::{names, prior};
-use super::screen::quieten;
 use super::sets::{Set, Sets, is_fixed};
+use super::starts::scale_process_noise;
 use crate::effects::Acts;
 
 /// Number of sets that are fitted before the next linearisation, and of rivals that are fitted about the best one.
@@ -369,7 +369,7 @@ impl<'b, 'a> Search<'b, 'a> {
                 self.take_away(member, from, &estimation, &mut start);
             }
         }
-        quieten(&estimation, &mut start, set.levels)?;
+        scale_process_noise(&estimation, &mut start, set.levels)?;
         self.place_all(from, set, &carried, &estimation, &mut start)?;
         let new: Vec<usize> = (set.members.iter().copied())
             .filter(|member| !from.members.contains(member))
@@ -380,7 +380,8 @@ impl<'b, 'a> Search<'b, 'a> {
                 start[place] = value;
             }
             bench.hide(&new, &estimation, &mut start)?;
-            bench.fit_above(self.floor(&set.members), &set.members, &estimation, &start)
+            let effort = bench.above(self.floor(&set.members));
+            bench.fit(effort, &set.members, &estimation, &start)
         });
         let mut fitted = best_fit(fits)?;
         self.count_late(&mut fitted)?;
@@ -532,7 +533,8 @@ impl<'b, 'a> Search<'b, 'a> {
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let mut start = bench.carried(whole, &estimation);
         self.take_away(idle, whole, &estimation, &mut start);
-        let mut fitted = bench.fit_above(self.floor(&members), &members, &estimation, &start)?;
+        let effort = bench.above(self.floor(&members));
+        let mut fitted = bench.fit(effort, &members, &estimation, &start)?;
         self.count_late(&mut fitted)?;
         Ok(fitted)
     }

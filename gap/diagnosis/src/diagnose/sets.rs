@@ -24,7 +24,8 @@ use super::evidence::{Fitted, occam};
 use super::gram::{Gram, Solved};
 use super::initial::SizeEstimates;
 use super::prior::{counts, of_components, of_count, prior, subsets};
-use super::screen::{Screened, directions, quieten, shapes};
+use super::screen::{Screened, directions, shapes};
+use super::starts::scale_process_noise;
 use crate::effects::Acts;
 
 /// Process noise relative to the fitted one.
@@ -161,7 +162,7 @@ impl<'b, 'a> Sets<'b, 'a> {
         };
         let levels = in_parallel(scales.to_vec(), |scale| {
             let mut values = values.clone();
-            quieten(&estimation, &mut values, scale)?;
+            scale_process_noise(&estimation, &mut values, scale)?;
             let tangent = bench
                 .input_innovations
                 .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;

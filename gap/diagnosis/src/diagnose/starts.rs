@@ -157,6 +157,29 @@ impl Bench<'_> {
     }
 }
 
+/// Multiplies the process noise among values by a factor.
+pub(super) fn scale_process_noise(
+    estimation: &Estimation<'_>,
+    values: &mut [f64],
+    factor: f64,
+) -> Result<(), DiagnoseError> {
+    for index in 0..estimation.setup().disturbances.len() {
+        values[estimation.layout().place(Unknown::Disturbance(index))?] *= factor;
+    }
+    Ok(())
+}
+
+/// The likeliest of some values; `None` if the filter diverges with each of them.
+pub(super) fn likeliest(
+    estimation: &Estimation<'_>,
+    all: impl IntoIterator<Item = Vec<f64>>,
+) -> Option<Vec<f64>> {
+    let likelihood = |values: Vec<f64>| Some((estimation.log_likelihood(&values).ok()?, values));
+    let known = all.into_iter().filter_map(likelihood);
+    let best = known.reduce(|best, next| if next.0 > best.0 { next } else { best });
+    best.map(|(_, values)| values)
+}
+
 /// Sets the initial lag states of channels near their first readings.
 fn begin_lags(estimation: &Estimation<'_>, values: &mut [f64]) {
     let (setup, layout) = (estimation.setup(), estimation.layout());

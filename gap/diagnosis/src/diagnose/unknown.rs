@@ -24,7 +24,7 @@ use super::evidence::Fitted;
 use super::evidence::log_sum;
 use super::gram::ByRun;
 use super::nuisance::{moving, priors};
-use super::screen::quieten;
+use super::starts::scale_process_noise;
 use crate::effects::Memory;
 
 pub(super) use dependence::Dependence;
@@ -102,7 +102,7 @@ pub(super) fn leftover(
     // Over windows there is none.
     let levels = if bench.is_over_windows() { 0 } else { LEVELS };
     for _ in 0..levels {
-        quieten(&estimation, &mut quiet.fit.values, QUIETER)?;
+        scale_process_noise(&estimation, &mut quiet.fit.values, QUIETER)?;
         // With less process noise the filter may diverge.
         let Ok(gains) = of_variables(bench, &estimation, &quiet, &kinds, &mut base, &mut families)
         else {

@@ -8,7 +8,7 @@ use super::yardstick::Yardstick;
 pub const QUANTILE: f64 = 1.959_964;
 
 /// An estimate.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Value {
     /// Effect and parameter.
     pub name: String,

@@ -185,24 +185,16 @@ mod tests {
             is_material,
         };
         HowFar {
-            horizon_s: 1.0,
             nominal: 10.0,
             refitted: 9.0,
             with_effect: 1.0,
             noise_floor: 0.5,
-            closed,
-            closed_ci95: [closed - 0.01, closed + 0.01],
-            closed_vs_refitted: closed,
             budget: vec![
                 share(REFIT, 0.99 - closed, true),
                 share("coulomb_friction@x", closed, is_material),
                 share(REST, 0.01, false),
             ],
-            channels: Vec::new(),
-            before: None,
-            bettered_ci95: [[0.9, 1.0]; 2],
-            is_worse: false,
-            runs: Vec::new(),
+            ..HowFar::default()
         }
     }
 
@@ -210,10 +202,7 @@ mod tests {
         Hypothesis {
             effects: effect.iter().map(|&name| name.to_owned()).collect(),
             probability,
-            same_as: None,
-            log_bayes_factor: None,
-            parameters: Vec::new(),
-            changes: None,
+            ..Hypothesis::default()
         }
     }
 
@@ -314,20 +303,8 @@ mod tests {
     #[test]
     fn what_closes_nothing_explains_nothing() {
         let which = [Hypothesis {
-            effects: vec!["coulomb_friction@x".to_owned()],
-            probability: 0.95,
-            same_as: None,
-            log_bayes_factor: Some(40.0),
-            parameters: vec![Value {
-                name: "coulomb_friction@x.force".to_owned(),
-                value: 0.2,
-                std: 0.01,
-                unit: "N".to_owned(),
-                without: Some(0.0),
-                is_determined: true,
-                yardstick: None,
-            }],
-            changes: None,
+            parameters: vec![Value::default()],
+            ..hypothesis(Some("coulomb_friction@x"), 0.95)
         }];
         let after = |far: &HowFar| GapVerdict::Explained.after(&which, Some(far), false);
         assert_eq!(after(&far(0.9, true)), GapVerdict::Explained);

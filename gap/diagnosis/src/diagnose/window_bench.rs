@@ -8,6 +8,7 @@ use super::bench::{Bench, SHARES};
 use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::scales::deviation;
+use super::starts::likeliest;
 use crate::identify::Problem;
 use appell_recordings::{DataSet, Run};
 
@@ -87,12 +88,6 @@ impl Bench<'_> {
         Ok(bench)
     }
 
-    /// The same with the likelihood weight and the effective sample size of another problem.
-    pub(super) fn with_weight_of(mut self, other: &Bench<'_>) -> Self {
-        (self.weight, self.told) = (other.weight, other.told);
-        self
-    }
-
     /// Whether there is no process noise.
     pub(super) fn is_over_windows(&self) -> bool {
         self.told.is_finite()
@@ -148,16 +143,6 @@ impl Bench<'_> {
         (-2.0 * gain / self.told).exp()
     }
 
-    /// A fit of another problem on the rows and with the noise levels of this one.
-    pub(super) fn taken(&self, from: &Self, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
-        self.with_levels(
-            from,
-            fitted,
-            (&self.problem.start, &self.layout),
-            self.effort(),
-        )
-    }
-
     /// A fit of another problem on these rows, with noise levels from those of the nominal model.
     pub(super) fn as_it_is(
         &self,
@@ -194,16 +179,12 @@ impl Bench<'_> {
         let free = &self.problem.levels;
         let fit = self.weighed(&estimation, &values, free, Fit::quick, effort)?;
         Ok(Fitted {
-            members: fitted.members.clone(),
             layout,
             fit,
-            evidence: fitted.evidence,
-            coloured: fitted.coloured,
+            ..fitted.clone()
         })
     }
-}
 
-impl Bench<'_> {
     /// Increases the initial noise of a search from that of the sensors towards the errors of the model over windows.
     pub(super) fn loosen(
         &self,
@@ -214,20 +195,15 @@ impl Bench<'_> {
             return Ok(());
         }
         let layout = estimation.layout();
-        let mut best: Option<(f64, Vec<f64>)> = None;
-        for factor in LARGER {
+        let levels = self.problem.levels.iter();
+        let places = levels.map(|free| layout.place(free.unknown));
+        let places: Vec<usize> = places.collect::<Result<_, _>>()?;
+        let larger = LARGER.map(|factor| {
             let mut larger = values.to_vec();
-            for free in &self.problem.levels {
-                larger[layout.place(free.unknown)?] *= factor;
-            }
-            let Ok(likelihood) = estimation.log_likelihood(&larger) else {
-                continue;
-            };
-            if best.as_ref().is_none_or(|(most, _)| likelihood > *most) {
-                best = Some((likelihood, larger));
-            }
-        }
-        if let Some((_, larger)) = best {
+            places.iter().for_each(|&place| larger[place] *= factor);
+            larger
+        });
+        if let Some(larger) = likeliest(estimation, larger) {
             values.copy_from_slice(&larger);
         }
         Ok(())
@@ -239,10 +215,16 @@ impl Bench<'_> {
         from: &Self,
         fitted: &Fitted,
     ) -> Result<(f64, Fitted), DiagnoseError> {
-        let taken = self.taken(from, fitted)?;
+        let levels = (&self.problem.start[..], &self.layout);
+        let taken = self.with_levels(from, fitted, levels, self.effort())?;
         let setup = self.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        let again = self.fit(&fitted.members, &estimation, &taken.fit.values)?;
+        let again = self.fit(
+            self.effort(),
+            &fitted.members,
+            &estimation,
+            &taken.fit.values,
+        )?;
         let gain = again.fit.log_likelihood - taken.fit.log_likelihood;
         Ok((gain, again))
     }

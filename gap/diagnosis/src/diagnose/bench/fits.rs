@@ -1,58 +1,28 @@
 //! Fits of hypotheses.
 
-use appell_estimate::{Effort, Estimation, Fit, Free};
+use appell_estimate::{Effort, EstimateError, Estimation, Fit, Free};
 
 use super::super::DiagnoseError;
 use super::super::evidence::{Evidence, Fitted};
 use super::super::feedback::for_kicks;
-use super::{Bench, COARSE, EFFORT, FINELY, SHARES, Search};
+use super::{Bench, COARSE, EFFORT, FINELY};
+
+/// An optimisation method.
+type Search = fn(&Estimation<'_>, &[f64], &[Free], Effort) -> Result<Fit, EstimateError>;
 
 impl Bench<'_> {
     /// Fits a hypothesis from initial values.
     pub(in super::super) fn fit(
         &self,
+        effort: Effort,
         members: &[usize],
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by(Fit::quick, self.effort(), members, estimation, start)
-    }
-
-    /// The same; given up where it stays far below a log posterior.
-    pub(in super::super) fn fit_above(
-        &self,
-        floor: f64,
-        members: &[usize],
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by(Fit::quick, self.above(floor), members, estimation, start)
-    }
-
-    /// The same to a twentieth of a standard deviation, for values that are reported alone.
-    pub(in super::super) fn fit_finely(
-        &self,
-        members: &[usize],
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
-        let effort = Effort {
-            gain: FINELY * self.effort().gain,
-            ..self.effort()
-        };
         self.fit_by(Fit::quick, effort, members, estimation, start)
     }
 
-    /// Fits a hypothesis with the accuracy that shares of a gap need.
-    pub(in super::super) fn fit_roughly(
-        &self,
-        members: &[usize],
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by(Fit::quick, SHARES, members, estimation, start)
-    }
-
+    /// The effort of a fit.
     pub(in super::super) fn effort(&self) -> Effort {
         if self.is_over_windows() {
             COARSE
@@ -69,6 +39,15 @@ impl Bench<'_> {
         }
     }
 
+    /// The effort of a fit to a twentieth of a standard deviation, for values that are reported alone.
+    pub(in super::super) fn finely(&self) -> Effort {
+        Effort {
+            gain: FINELY * self.effort().gain,
+            ..self.effort()
+        }
+    }
+
+    /// Fits a hypothesis by an optimisation method.
     pub(in super::super) fn fit_by(
         &self,
         search: Search,
@@ -100,9 +79,7 @@ impl Bench<'_> {
             coloured: 0.0,
         })
     }
-}
 
-impl Bench<'_> {
     /// A fit with weighted rows: the objective is divided by the weight, so that the prior is scaled instead.
     pub(in super::super) fn weighed(
         &self,

@@ -1,16 +1,14 @@
 //! Missing forces over time and over their variables, and forces of inputs with those predicted by inverse dynamics.
 
-use super::super::force_history::median;
+use super::super::force_history::OfRun;
 use super::super::force_law::{Step, over_its_variable, over_rates_and_positions};
 use super::super::localise::force_unit;
-use super::super::report::{ForceHistory, MissingForce, Pictures, Trace, Where};
-use super::motions::{Motion, Motions};
+use super::super::report::{ForceHistory, Pictures, Trace, Where};
+use super::motions::Motions;
 use super::report::added;
 use super::search::Findings;
 use crate::effects::EffectModel;
 
-/// Largest number of intervals over all runs, the resolution of the plot.
-const PARTS: f64 = 160.0;
 /// Shortest interval in s.
 const SHORTEST: f64 = 0.5;
 
@@ -57,47 +55,21 @@ fn steps(model: &EffectModel, found: &Findings, motions: &Motions, equation: usi
 }
 
 fn force_history(model: &EffectModel, found: &Findings, motions: &Motions) -> ForceHistory {
-    let info = model.info();
-    let ends = |own: &[&Motion]| match own {
-        [first, .., last] => (first.t, last.t),
-        _ => (0.0, 0.0),
-    };
-    let all = motions.runs();
-    let lengths = all.iter().map(|(_, own)| ends(own));
-    let length: f64 = lengths.map(|(from, to)| to - from).sum();
-    let part = SHORTEST.max(length / PARTS);
-    let mut runs = Vec::new();
-    let mut sizes: Vec<Vec<Vec<f64>>> = vec![Vec::new(); info.speeds];
-    for (run, own) in &all {
-        let (from, to) = ends(own);
-        // The number of intervals is small.
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let parts = ((to - from) / part).ceil().max(1.0) as usize;
-        let first = sizes[0].len();
-        for sizes in &mut sizes {
-            sizes.resize(first + parts, Vec::new());
-        }
-        for motion in own {
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let place = (((motion.t - from) / part) as usize).min(parts - 1);
+    let runs = motions.runs().into_iter().map(|(run, own)| {
+        let forces = own.iter().map(|motion| {
             let left = motion.left(&found.nominal().changes);
-            for (sizes, force) in sizes.iter_mut().zip(left.iter()) {
-                sizes[first + place].push(force.abs());
-            }
+            (motion.t, left.iter().copied().collect())
+        });
+        OfRun {
+            name: run.to_owned(),
+            ends: match own.as_slice() {
+                [first, .., last] => [first.t, last.t],
+                _ => [0.0, 0.0],
+            },
+            forces: forces.collect(),
         }
-        runs.push(((*run).to_owned(), from, parts));
-    }
-    let equations = sizes.into_iter().enumerate();
-    let equations = equations.map(|(equation, sizes)| MissingForce {
-        name: info.states[equation].name.to_string(),
-        unit: force_unit(&model.mechanism, equation),
-        medians: sizes.into_iter().map(median).collect(),
     });
-    ForceHistory {
-        part,
-        runs,
-        equations: equations.collect(),
-    }
+    ForceHistory::of(model, runs.collect(), SHORTEST)
 }
 
 /// The forces of the inputs in the first run, and those that the models predict for its motion.

@@ -1,19 +1,17 @@
 //! The report of a diagnosis by forces.
 
-use appell_estimate::chi_squared_probability;
 use appell_recordings::DataSet;
 use nalgebra::DVector;
 
-use super::super::assembly::{DETECTABLE, found, shortened, tied};
+use super::super::assembly::{detectable, found, shortened, tied};
 use super::super::budget::{self, Ends};
 use super::super::calibration::IMMATERIAL;
 use super::super::changes::{Changes, Equations};
-use super::super::localise::force_unit;
+use super::super::localise::{Added, force_unit};
 use super::super::prediction::{Errors, Paired};
 use super::super::prior::names;
 use super::super::report::{
-    Detectable, ErrorOf, GapVerdict, HowFar, Hypothesis as Told, Report, ShareOf, Value, Where,
-    Yardstick,
+    ErrorOf, GapVerdict, HowFar, Hypothesis as Told, Report, Value, Where, Yardstick,
 };
 use super::super::{DiagnoseError, Options};
 use super::hypothesis::Hypothesis;
@@ -60,13 +58,12 @@ pub(super) fn report(
     let first = GapVerdict::of(&which[0], &tied);
     let stayed = nominal.variances.iter().zip(&best.variances);
     let names = model.info().speed_quantities().iter();
+    let deviations = found.alone.iter().filter_map(|fitted| {
+        let candidate = fitted.members[0];
+        let parameter = model.first_parameter(model.candidate(candidate))?;
+        Some((candidate, fitted.change(training, parameter).1?))
+    });
     Ok(Report {
-        mechanism: set.mechanism.name.clone(),
-        robot: set.robot.as_ref().map(|robot| robot.format.word()),
-        locked: set
-            .robot
-            .as_ref()
-            .map_or_else(Vec::new, |robot| robot.locked.clone()),
         verdict: first.after(&which, far.as_ref(), false),
         is_by_forces: true,
         rows: [training.all().count(), set.rows()],
@@ -82,10 +79,10 @@ pub(super) fn report(
         which: shortened(&which).unwrap_or(which),
         tied,
         how_far: far,
-        detectable: detectable(model, found, training),
+        detectable: detectable(model, set, deviations),
         independent: found.independent,
         found: self::found(model, &best.members),
-        ..Report::default()
+        ..Report::of(set)
     })
 }
 
@@ -248,8 +245,7 @@ fn place(model: &EffectModel, found: &Findings, motions: &Motions) -> Where {
     let Some(&first) = best.members.first() else {
         return Where::default();
     };
-    let info = model.info();
-    let (mut squares, mut count) = (vec![0.0; info.speeds], 0.0_f64);
+    let (mut squares, mut count) = (vec![0.0; model.info().speeds], 0.0_f64);
     for motion in motions.all() {
         let added = added(model, best, motions, motion);
         for (square, force) in squares.iter_mut().zip(added.iter()) {
@@ -257,29 +253,15 @@ fn place(model: &EffectModel, found: &Findings, motions: &Motions) -> Where {
         }
         count += 1.0;
     }
-    let gain = best.log_likelihood - nominal.log_likelihood;
-    let p_value = 1.0 - chi_squared_probability(2.0 * gain, 1.0);
     let of_noise = squares.iter().zip(&best.variances);
-    let energies: Vec<f64> = of_noise
-        .map(|(square, variance)| square / variance)
-        .collect();
-    let whole: f64 = energies.iter().sum();
-    let equations = energies.iter().zip(&squares).enumerate();
-    let equations = equations.map(|(equation, (energy, square))| ShareOf {
-        name: info.states[equation].name.to_string(),
-        share: energy / whole.max(f64::MIN_POSITIVE),
-        p_value,
-        rms: (square / count.max(1.0)).sqrt(),
-        unit: force_unit(&model.mechanism, equation),
-    });
-    let mut equations: Vec<ShareOf> = equations.collect();
-    equations.sort_by(|a, b| b.share.total_cmp(&a.share));
-    Where {
-        domain: model.candidate(first).family.domain(),
-        equations,
-        windows: Vec::new(),
-        region: Vec::new(),
-    }
+    let energies = of_noise.map(|(square, variance)| square / variance);
+    let added = Added {
+        energies: energies.collect(),
+        squares,
+        count,
+        gain: best.log_likelihood - nominal.log_likelihood,
+    };
+    added.place(model, first)
 }
 
 /// Residual forces of the held-out runs, in units of their noise.
@@ -297,11 +279,9 @@ fn how_far(
     let (refit, effect) = (errors(&refitted.changes), errors(&best.changes));
     let floor = 1.0;
     let paired = Paired::of(&[&stated, &refit, &effect]);
-    let means = paired.means();
     let ends = Ends {
         stated: &stated,
-        // If the fitted parameters predict worse than the stated ones, these are the base.
-        base: if means[1] < means[0] { &refit } else { &stated },
+        refitted: &refit,
         effects: &effect,
         law: None,
         floor,
@@ -352,30 +332,4 @@ fn errors(motions: &Motions, changes: &DVector<f64>, noise: &DVector<f64>) -> Er
         }
     }
     errors
-}
-
-/// The smallest detectable size of each effect.
-fn detectable(model: &EffectModel, found: &Findings, motions: &Motions) -> Vec<Detectable> {
-    let info = model.info();
-    let mut told: Vec<Detectable> = Vec::new();
-    for fitted in &found.alone {
-        let candidate = model.candidate(fitted.members[0]);
-        let parameter = match candidate.acts {
-            Acts::Parameter(parameter) => Some(parameter),
-            _ => model.own(candidate).first().map(|(index, _)| *index),
-        };
-        let Some(parameter) = parameter else { continue };
-        let (_, deviation) = fitted.change(motions, parameter);
-        let effect = candidate.name();
-        let is_told = told.iter().any(|own| own.effect == effect);
-        if let Some(deviation) = deviation.filter(|_| !is_told) {
-            let quantity = &info.parameters[parameter];
-            told.push(Detectable {
-                effect,
-                smallest: DETECTABLE * deviation / quantity.scale,
-                unit: quantity.unit.to_string(),
-            });
-        }
-    }
-    told
 }

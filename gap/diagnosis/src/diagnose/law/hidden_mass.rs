@@ -2,12 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::super::bench::Bench;
-use super::super::evidence::Fitted;
-use super::super::localise::force_unit;
-use super::super::report::Law;
-use super::super::unknown::Unnamed;
-use super::deviation::Deviation;
+use super::{Course, Point};
 
 /// Number of frequencies at which the apparent mass is reported.
 const PLACES: usize = 81;
@@ -16,51 +11,36 @@ const RANGE: [f64; 2] = [0.25, 4.0];
 /// Relative step of finite differences.
 const STEP: f64 = 1e-4;
 
-/// The law with its band.
-pub(super) fn law(
-    main: &Bench<'_>,
-    law: &Unnamed,
-    coordinate: &str,
-    fitted: &Fitted,
-    places: &[usize],
-) -> Law {
-    let values: Vec<f64> = (places.iter())
-        .map(|&place| fitted.fit.values[place])
-        .collect();
-    let deviation = Deviation::of(fitted, places);
+/// The law of a mass behind a coordinate with a force of this unit: mass, natural frequency and damping ratio are `values`.
+pub(super) fn course(force_unit: &str, coordinate: &str, values: &[f64]) -> Course {
     let point = |place: usize| {
         let part = place as f64 / (PLACES - 1) as f64;
         let rate = values[1] * RANGE[0] * (RANGE[1] / RANGE[0]).powf(part);
         let slope = |number: usize| {
             let step = STEP * values[number].abs().max(f64::MIN_POSITIVE);
             let [low, high] = [-step, step].map(|step| {
-                let mut values = values.clone();
+                let mut values = values.to_vec();
                 values[number] += step;
                 apparent(&values, rate)
             });
             (high - low) / (2.0 * step)
         };
-        let slopes: Vec<f64> = (0..values.len()).map(slope).collect();
-        [
-            rate / TAU,
-            apparent(&values, rate),
-            deviation.along(&slopes),
-        ]
+        Point {
+            variable: rate / TAU,
+            force: apparent(values, rate),
+            slopes: (0..values.len()).map(slope).collect(),
+        }
     };
-    Law {
-        equation: main.effects.info().states[law.place].name.to_string(),
-        unit: match force_unit(&main.effects.mechanism, law.place).as_str() {
+    Course {
+        unit: match force_unit {
             "N" => "kg".to_owned(),
             "N m" => "kg m^2".to_owned(),
             other => format!("{other} s^2"),
         },
-        depends_on: law.variable.clone(),
         variable: "frequency".to_owned(),
         variable_unit: "Hz".to_owned(),
         factor: Some(format!("acceleration of {coordinate}")),
-        curve: (0..PLACES).map(point).collect(),
-        log_bayes_factor: law.log_bayes_factor,
-        forms: Vec::new(),
+        points: (0..PLACES).map(point).collect(),
     }
 }
 

@@ -2,14 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::super::DiagnoseError;
 use super::super::bench::Bench;
-use super::super::evidence::Fitted;
-use super::super::forms::forms;
 use super::super::localise::force_unit;
-use super::super::report::Law;
 use super::super::unknown::{Dependence, Series, Unnamed};
-use super::deviation::Deviation;
+use super::{Course, Point};
 use crate::effects::Candidate;
 
 /// Number of points at which the law is reported: at least, and for each half of its shortest period.
@@ -61,24 +57,17 @@ pub(super) fn candidate(
     Some(Candidate::measured(mechanism, speed, &force, &numbers))
 }
 
-/// The law with its band.
-pub(super) fn law(
+/// The law, whose coefficients are `values`.
+pub(super) fn course(
     main: &Bench<'_>,
-    base: &Fitted,
-    unnamed: &Unnamed,
+    force_unit: String,
     dependence: Dependence<'_>,
     series: &Series,
-    fitted: &Fitted,
-    places: &[usize],
-) -> Result<Law, DiagnoseError> {
+    values: &[f64],
+) -> Course {
     let (variable_unit, scale) = dependence.unit(main);
     let written = dependence.written(main);
     let (low, high) = dependence.range;
-    let deviation = Deviation::of(fitted, places);
-    let values: Vec<f64> = places
-        .iter()
-        .map(|&place| fitted.fit.values[place])
-        .collect();
     let shortest = series.terms.iter().map(|(wave, ..)| wave + 1).max();
     let points = PLACES[0].max(PLACES[1] * shortest.unwrap_or(1));
     // After the amplitudes.
@@ -90,29 +79,28 @@ pub(super) fn law(
             let (sin, cos) = (rate * x).sin_cos();
             [sin, cos]
         });
-        let mut waves: Vec<f64> = waves.collect();
-        let force: f64 = values
-            .iter()
-            .zip(&waves)
-            .map(|(size, wave)| size * wave)
-            .sum();
+        let mut slopes: Vec<f64> = waves.collect();
+        let force = values.iter().zip(&slopes).map(|(size, wave)| size * wave);
+        let force: f64 = force.sum();
         if rate.is_some() {
             // The derivative by the frequency of a single harmonic.
-            waves.push(x * (values[0] * waves[1] - values[1] * waves[0]));
+            slopes.push(x * (values[0] * slopes[1] - values[1] * slopes[0]));
         }
-        [x / scale, force, deviation.along(&waves)]
+        Point {
+            variable: x / scale,
+            force,
+            slopes,
+        }
     };
-    let factor_unit = written.as_ref().and_then(|own| own.factor_unit.clone());
-    let force = force_unit(&main.effects.mechanism, unnamed.place);
-    Ok(Law {
-        equation: main.effects.info().states[unnamed.place].name.to_string(),
-        unit: factor_unit.map_or(force.clone(), |factor| format!("{force}/({factor})")),
-        depends_on: unnamed.variable.clone(),
+    let factor_unit = written.as_ref().and_then(|own| own.factor_unit.as_ref());
+    Course {
+        unit: match factor_unit {
+            Some(factor) => format!("{force_unit}/({factor})"),
+            None => force_unit,
+        },
         variable: dependence.letters(main).0,
         variable_unit,
+        points: (0..points).map(point).collect(),
         factor: written.and_then(|own| own.factor),
-        curve: (0..points).map(point).collect(),
-        log_bayes_factor: unnamed.log_bayes_factor,
-        forms: forms(main, base, dependence, unnamed)?,
-    })
+    }
 }

@@ -15,16 +15,16 @@
 //!          --horizon--> validation by simulations over windows; if it fails, these rank the hypotheses
 //!          --outside--> windows that no hypothesis predicts are cut, and the steps above repeated
 //!          --coloured--> one-step predictions with process noise that has memory
-//!          --materiality--> members that close nothing on held-out runs are no members
+//!          --compare--> members that close nothing on held-out runs are no members
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> nonparametric laws for the residual of the best hypothesis
-//!          --localise, windows, outside--> equations, windows of time, regions, events that no hypothesis predicts
+//!          --localise, outside--> equations, windows of time, regions, events that no hypothesis predicts
 //!          --assumptions--> stated tolerances and interpolation of inputs
 //!          --assembly--> hypotheses with their values and ties, as in the report
 //!          --law--> the residual, measured as a force law
 //!          --held_out, prediction--> prediction errors: nominal, re-fitted, with the effect, noise
 //!          --budget--> the share of each effect in the gap, and the remainder
-//!          --force_history, traces, force_law--> data of the plots
+//!          --force_history, held_out, force_law--> data of the plots
 //!          --experiment--> an input that discriminates between tied hypotheses
 //!          --changes--> the changes of the spec under each hypothesis
 //!          --yardstick, advice--> sizes relative to known quantities; which changes are certain
@@ -47,7 +47,6 @@ mod by_forces;
 mod calibration;
 mod changes;
 mod coloured;
-mod common;
 mod compare;
 mod error;
 mod evidence;
@@ -55,22 +54,16 @@ mod experiment;
 mod feedback;
 mod force_history;
 mod force_law;
-mod forces;
 mod forms;
 mod gram;
 mod hardware;
 mod held_out;
 mod horizon;
-mod initial;
 mod instead;
 mod law;
 mod localise;
-mod materiality;
 mod nominal;
-mod nuisance;
-mod options;
 mod outside;
-mod pictures;
 mod prediction;
 mod prior;
 mod reading;
@@ -80,28 +73,23 @@ mod scan;
 mod screen;
 mod search;
 mod sets;
-mod start_levels;
 mod starts;
 mod stated;
-mod traces;
-mod twins;
 mod unknown;
 mod unmodelled;
-mod value;
 mod verdict;
 mod whiteness;
 mod window_bench;
-mod windows;
 mod yardstick;
 
 use crate::effects::{Effect, EffectModel, candidates};
-use appell_recordings::{DataSet, Part};
+use appell_recordings::{DataSet, Part, Spec};
 
 pub use crate::held_out::AHEAD;
 pub use against::against;
 pub use changes::{Changes, Refitted, SignalEffect};
+use error::Result;
 pub use error::{ChangeError, DiagnoseError};
-pub use options::Options;
 pub use report::{
     Advice, Ahead, Before, Change, Detectable, ErrorOf, Experiment, ForceHistory, ForceLaw, Form,
     Found, GapVerdict, Hint, HowFar, Hypothesis, Interpolated, Law, Left, Limit, MissingForce,
@@ -112,6 +100,7 @@ pub use report::{
 use alternative::{Alternative, Rival};
 use bench::Bench;
 use compare::Comparison;
+use evidence::Fitted;
 use held_out::{HeldOut, Leader};
 use horizon::Judged;
 use screen::screen;
@@ -126,6 +115,23 @@ const MOST_ROWS: usize = 4000;
 const MOST_VALUES: usize = 20_000;
 /// The same for robots, which are judged over windows.
 const ROBOT_VALUES: usize = 4_000;
+
+/// Options of a diagnosis.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Whether to include the data of the plots: traces, and the missing force over its variable.
+    pub pictures: bool,
+    /// Limits of the next experiment; by default it stays near the recorded ranges.
+    pub limits: Vec<Limit>,
+    /// Other specs of the same rig, each a hypothesis of its own.
+    pub alternatives: Vec<Spec>,
+    /// Horizon in s at which the gap is reported; by default 1 s, limited by the length of the runs.
+    pub horizon: Option<f64>,
+    /// Share of the gap of the re-fitted model below which an effect is not reported as a cause; by default 0.02.
+    pub tolerance: Option<f64>,
+    /// Names of effects that the spec contains already, which are no hypotheses.
+    pub present: Vec<String>,
+}
 
 /// Diagnoses a data set with a library of effects. `stage` is called with the name of each stage.
 pub fn diagnose(
@@ -144,7 +150,7 @@ fn diagnosed(
     effects: &[Effect],
     options: &Options,
     mut stage: &mut dyn FnMut(&'static str),
-) -> Result<Report, DiagnoseError> {
+) -> Result<Report> {
     stage("deriving the mechanism with all effects");
     let whole = set.only(Part::Fit);
     let fitted = whole.stretches(most_rows(set, options));
@@ -185,38 +191,24 @@ fn diagnosed(
         reading,
         ..own.clone()
     });
-    let training = Training {
-        whole: &whole,
-        segments: &fitted,
-    };
-    by_filter(&set, before, training, &model, options, stage)
+    by_filter(&set, before, [&whole, &fitted], &model, options, stage)
 }
 
-/// The training runs.
-#[derive(Clone, Copy)]
-struct Training<'d> {
-    /// The whole runs.
-    whole: &'d DataSet,
-    /// Segments of them that are fitted, with a limited number of rows.
-    segments: &'d DataSet,
-}
-
-/// The diagnosis by the innovations of a filter and by simulations.
+/// The diagnosis by the innovations of a filter and by simulations. The training runs are whole runs, and segments of them
+/// that are fitted, with a limited number of rows.
 fn by_filter(
     set: &DataSet,
     before: Option<&DataSet>,
-    training: Training<'_>,
+    [whole, segments]: [&DataSet; 2],
     model: &EffectModel,
     options: &Options,
     mut stage: impl FnMut(&'static str),
-) -> Result<Report, DiagnoseError> {
-    let whole = training.whole;
-    let first = judged(training, model, options, &mut stage)?;
+) -> Result<Report> {
+    let first = judged([whole, segments], model, options, &mut stage)?;
     let training_runs = HeldOut::of(&whole.all(Part::Test), &first.bench)?;
     let (judged, rest) = without_events(first, whole, model, options, &mut stage)?;
     let is_whole = rest.is_none();
-    let (fitted, rest) =
-        (rest.as_ref()).map_or((training.segments, whole), |(fitted, rest)| (fitted, rest));
+    let (fitted, rest) = (rest.as_ref()).map_or((segments, whole), |(fitted, rest)| (fitted, rest));
     let Judged {
         bench,
         screen,
@@ -241,11 +233,11 @@ fn by_filter(
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;
     stage("localising the gap");
     let mut place = localise::place(&bench, &comparison)?;
-    windows::tell(&bench, &comparison, &mut place)?;
+    localise::tell(&bench, &comparison, &mut place)?;
     let mut report = assembly::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
     report.failed.append(&mut lost);
     report.rows = [fitted.rows(), whole.rows()];
-    report.hints = assembly::hints(&bench, &comparison)?;
+    report.hints = unknown::hints(&bench, comparison.nominal())?;
     report.tolerances = assumptions::tolerances(comparison.best());
     // Without a result if the filter diverges with the other interpolation.
     report.interpolated =
@@ -346,17 +338,13 @@ fn without_events<'m>(
     model: &'m EffectModel,
     options: &Options,
     stage: &mut impl FnMut(&'static str),
-) -> Result<(Judged<'m>, Option<(DataSet, DataSet)>), DiagnoseError> {
+) -> Result<(Judged<'m>, Option<(DataSet, DataSet)>)> {
     let Some(rest) = outside::rest(&mut first, whole)? else {
         return Ok((first, None));
     };
     let fitted = rest.stretches(most_rows(&rest, options));
     stage("fitting without the windows that no hypothesis predicts");
-    let training = Training {
-        whole: &rest,
-        segments: &fitted,
-    };
-    Ok(match judged(training, model, options, stage) {
+    Ok(match judged([&rest, &fitted], model, options, stage) {
         Ok(again) => (again.without_events(), Some((fitted, rest))),
         Err(_) => (first, None),
     })
@@ -380,7 +368,7 @@ fn pictures(
     comparison: &Comparison,
     leader: &Leader<'_>,
     place: &Where,
-) -> Result<Pictures, DiagnoseError> {
+) -> Result<Pictures> {
     let (force_law, joints) = match leader.alternative {
         Some(_) => (None, Vec::new()),
         None => force_law::force_laws(bench, comparison, place)?,
@@ -393,15 +381,15 @@ fn pictures(
     })
 }
 
-/// The hypotheses ranked on the training runs.
+/// The hypotheses ranked on the training runs, whole and in segments.
 fn judged<'m>(
-    training: Training<'_>,
+    [whole, segments]: [&DataSet; 2],
     model: &'m EffectModel,
     options: &Options,
     stage: &mut impl FnMut(&'static str),
-) -> Result<Judged<'m>, DiagnoseError> {
-    let whole = &training.whole.bound_to(&model.mechanism);
-    let mut bench = Bench::new(training.segments, model)?;
+) -> Result<Judged<'m>> {
+    let whole = &whole.bound_to(&model.mechanism);
+    let mut bench = Bench::new(segments, model)?;
     bench.whole.clone_from(&whole.runs);
     bench.is_of_robot = by_forces::is_of_robot(whole, options);
     stage("fitting the nominal model");
@@ -419,4 +407,10 @@ fn judged<'m>(
         return Ok(judged);
     }
     judged.with_coloured_noise()
+}
+
+/// A count or an index in memory: a number that is small and not negative, rounded down.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+const fn whole(number: f64) -> usize {
+    number as usize
 }

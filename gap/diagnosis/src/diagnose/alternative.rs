@@ -7,11 +7,7 @@
 
 use appell_estimate::{Estimation, Innovation};
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::changes::Changes;
-use super::evidence::Fitted;
-use super::report::Value;
+use super::{Bench, Changes, DiagnoseError, Fitted, Result, Value};
 use crate::effects::EffectModel;
 use appell_recordings::{DataSet, Spec};
 
@@ -36,7 +32,7 @@ type Lost = (Vec<String>, String);
 
 impl Alternative {
     /// Of a spec, with the training runs.
-    pub(super) fn new(fitted: &DataSet, spec: &Spec) -> Result<Self, DiagnoseError> {
+    pub(super) fn new(fitted: &DataSet, spec: &Spec) -> Result<Self> {
         Ok(Self {
             set: fitted.rebound(spec)?,
             model: EffectModel::new(spec, Vec::new())?,
@@ -54,7 +50,7 @@ impl<'a> Rival<'a> {
     pub(super) fn all(
         alternatives: &'a [Alternative],
         main: &Bench<'_>,
-    ) -> Result<(Vec<Self>, Vec<Lost>), DiagnoseError> {
+    ) -> Result<(Vec<Self>, Vec<Lost>)> {
         let (mut rivals, mut lost) = (Vec::new(), Vec::new());
         for alternative in alternatives {
             match Self::of(alternative, main) {
@@ -69,7 +65,7 @@ impl<'a> Rival<'a> {
     }
 
     /// Fits an alternative to the model of `main`.
-    fn of(alternative: &'a Alternative, main: &Bench<'_>) -> Result<Self, DiagnoseError> {
+    fn of(alternative: &'a Alternative, main: &Bench<'_>) -> Result<Self> {
         let name = alternative.set.mechanism.name.clone();
         let shared = columns(main);
         let own = measured(&alternative.set, &alternative.model);
@@ -109,7 +105,7 @@ impl<'a> Rival<'a> {
     }
 
     /// Parameters after the fit.
-    pub(super) fn values(&self) -> Result<Vec<Value>, DiagnoseError> {
+    pub(super) fn values(&self) -> Result<Vec<Value>> {
         let parameters = Changes::of(&self.bench, &self.fitted)?.parameters;
         let values = parameters.into_iter().map(|one| Value {
             name: format!("{}.{}", self.name, one.name),
@@ -135,11 +131,7 @@ fn measured(set: &DataSet, model: &EffectModel) -> Vec<String> {
 }
 
 /// Log-likelihood of the samples of some channels, each given all samples before it.
-fn of_channels(
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    channels: &[bool],
-) -> Result<f64, DiagnoseError> {
+fn of_channels(bench: &Bench<'_>, fitted: &Fitted, channels: &[bool]) -> Result<f64> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let runs = estimation.innovations(&fitted.fit.values)?;

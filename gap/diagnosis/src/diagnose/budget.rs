@@ -8,12 +8,10 @@
 
 use appell_estimate::Estimation;
 
-use super::DiagnoseError;
-use super::bench::{Bench, SHARES};
-use super::compare::Comparison;
-use super::evidence::Fitted;
+use super::bench::SHARES;
 use super::prediction::{Errors, Paired};
-use super::report::{LAW, REFIT, REST, Share};
+use super::report::{LAW, REFIT, REST};
+use super::{Bench, Comparison, Fitted, Result, Share};
 use crate::effects::{Acts, EffectModel};
 
 /// Prediction errors of the models between which the gap is divided.
@@ -37,8 +35,8 @@ pub(super) struct Ends<'e> {
 pub(super) fn of(
     effects: &[(String, Vec<usize>)],
     ends: &Ends<'_>,
-    errors: impl Fn(&[usize]) -> Result<Errors, DiagnoseError>,
-) -> Result<Vec<Share>, DiagnoseError> {
+    errors: impl Fn(&[usize]) -> Result<Errors>,
+) -> Result<Vec<Share>> {
     let count = effects.len();
     let all = (1 << count) - 1;
     let mut between: Vec<Errors> = Vec::new();
@@ -176,7 +174,7 @@ pub(super) fn with(
     comparison: &Comparison,
     best: &Fitted,
     members: &[usize],
-) -> Result<Fitted, DiagnoseError> {
+) -> Result<Fitted> {
     let known = |own: &&Fitted| own.members.iter().all(|one| members.contains(one));
     let known = comparison.fits.iter().map(|(own, _)| own).filter(known);
     let nearest = known.max_by(|a, b| a.evidence.log().total_cmp(&b.evidence.log()));
@@ -193,20 +191,17 @@ pub(super) fn with(
     );
     let new = members.iter().filter(|one| !nearest.members.contains(one));
     for &member in new {
-        let brought = bench.brought(member, &setup);
-        let brought = brought
-            .iter()
-            .map(|free| estimation.layout().place(free.unknown));
-        let own = bench
-            .own(bench.candidate(member))
-            .into_iter()
-            .map(|(place, _)| Ok(place));
-        for place in brought.chain(own) {
-            let place = place?;
-            start[place] = whole[place];
+        let candidate = bench.candidate(member);
+        let own = bench.own(candidate).into_iter();
+        let mut places: Vec<usize> = own.map(|(place, _)| place).collect();
+        if let Some(free) = bench.of_signal(candidate.acts, &setup) {
+            places.push(estimation.layout().place(free.unknown)?);
         }
-        if let Acts::Parameter(index) = bench.candidate(member).acts {
-            start[index] = whole[index];
+        if let Acts::Parameter(index) = candidate.acts {
+            places.push(index);
+        }
+        for place in places {
+            start[place] = whole[place];
         }
     }
     bench.fit(SHARES, members, &estimation, &start)

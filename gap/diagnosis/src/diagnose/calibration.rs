@@ -69,30 +69,27 @@ pub(super) fn unlisted_alone(log_bayes_factor: f64) -> f64 {
 }
 
 /// Odds of a gap with a cause outside the library if no effect is found.
-pub(super) fn unlisted_beside_nothing(rest: Rest) -> f64 {
-    UNLISTED * rest.log_bayes_factor.min(MOST).exp()
+pub(super) fn unlisted_beside_nothing(log_bayes_factor: f64) -> f64 {
+    UNLISTED * log_bayes_factor.min(MOST).exp()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn rest(log_bayes_factor: f64, share: f64) -> Rest {
-        Rest {
+    fn beside_an_effect(log_bayes_factor: f64, share: f64) -> f64 {
+        unlisted_beside_an_effect(Rest {
             log_bayes_factor,
             share,
-        }
-    }
-
-    #[test]
-    fn what_leaves_nothing_is_nearly_as_probable_as_the_library_is_complete() {
-        let odds = unlisted_beside_an_effect(rest(f64::NEG_INFINITY, 0.0));
-        assert!(odds > 0.01 && odds < 0.1, "{odds}");
+        })
     }
 
     #[test]
     fn what_leaves_much_is_not_the_cause() {
-        let odds = |share| unlisted_beside_an_effect(rest(200.0, share));
+        // Without a rest it is nearly as probable as the library is complete.
+        let odds = beside_an_effect(f64::NEG_INFINITY, 0.0);
+        assert!(odds > 0.01 && odds < 0.1, "{odds}");
+        let odds = |share| beside_an_effect(200.0, share);
         assert!(odds(0.5) > 1e3, "{}", odds(0.5));
         assert!(odds(0.001) < 0.2, "a nearly exact law: {}", odds(0.001));
         assert!(odds(0.1) < odds(0.2) && odds(0.2) < odds(0.4));
@@ -100,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_rest_beside_no_effect_is_a_gap() {
-        assert!(unlisted_beside_nothing(rest(-3.0, 1.0)) < 0.01);
-        assert!(unlisted_beside_nothing(rest(10.0, 1.0)) > 1e3);
+        assert!(unlisted_beside_nothing(-3.0) < 0.01);
+        assert!(unlisted_beside_nothing(10.0) > 1e3);
     }
 }

@@ -3,11 +3,8 @@
 use appell_estimate::{Estimation, Shapes};
 use appell_runtime::model::At;
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
-use super::report::Form;
 use super::unknown::{Dependence, Unnamed, term_scores};
+use super::{Bench, Fitted, Form, Result};
 
 /// Largest number of reported forms.
 const TOLD: usize = 3;
@@ -40,7 +37,7 @@ pub(super) fn forms(
     base: &Fitted,
     dependence: Dependence<'_>,
     law: &Unnamed,
-) -> Result<Vec<Form>, DiagnoseError> {
+) -> Result<Vec<Form>> {
     let tried = trials(bench, dependence);
     let mut forms = scored(bench, base, dependence, law, tried)?;
     // The frequencies of harmonics are a grid: the best one is refined between its neighbours.
@@ -73,7 +70,7 @@ fn scored(
     dependence: Dependence<'_>,
     law: &Unnamed,
     trials: Vec<Trial>,
-) -> Result<Vec<(Option<f64>, Form)>, DiagnoseError> {
+) -> Result<Vec<(Option<f64>, Form)>> {
     let setup = bench.setup(&base.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let functions = || trials.iter().flat_map(|trial| &trial.functions);
@@ -98,7 +95,7 @@ fn scored(
     let Some((_, scores)) = scores.find(|(place, _)| *place == law.place) else {
         return Ok(Vec::new());
     };
-    let (_, written) = dependence.letters(bench);
+    let written = dependence.written(bench).and_then(|own| own.factor);
     let mut forms: Vec<(Option<f64>, Form)> = Vec::new();
     let mut first = 0;
     for trial in trials {
@@ -107,7 +104,7 @@ fn scored(
         let Some(own) = scores.of(&terms.collect::<Vec<_>>()) else {
             continue;
         };
-        let share = own.gain / law.gain.max(f64::MIN_POSITIVE);
+        let share = own.gain / law.gains.gain.max(f64::MIN_POSITIVE);
         if share > NEAR {
             let form = Form {
                 text: match &written {
@@ -126,9 +123,9 @@ fn scored(
 
 /// All forms of a variable.
 fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> Vec<Trial> {
-    let (name, _) = dependence.letters(bench);
+    let (name, _, scale) = dependence.letters(bench);
     let (low, high) = dependence.range;
-    let (range, scale) = (high - low, dependence.unit(bench).1);
+    let range = high - low;
     let width = STEP * range;
     let mut trials: Vec<Trial> = Vec::new();
     let mut add = |text: String, alike: usize, function: Function| {
@@ -182,8 +179,7 @@ fn waves(
     dependence: Dependence<'_>,
     rates: impl Iterator<Item = f64>,
 ) -> impl Iterator<Item = Trial> {
-    let (name, _) = dependence.letters(bench);
-    let scale = dependence.unit(bench).1;
+    let (name, _, scale) = dependence.letters(bench);
     rates.map(move |rate| Trial {
         text: format!("sin({}*{name} + phase)", rounded(rate * scale, 3)),
         functions: vec![

@@ -9,20 +9,16 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use super::DiagnoseError;
-use super::bench::Bench;
+use super::bench::SHARES;
 use super::calibration::{IMMATERIAL, TIED};
 use super::coloured;
-use super::compare::Comparison;
-use super::evidence::Fitted;
-use super::report::Window;
 use super::scales::{deviation, rates};
 use super::screen::{Screened, screen};
 use super::search::Look;
 use super::unknown::leftover;
-use crate::effects::Acts;
+use super::{Bench, Comparison, DiagnoseError, Fitted, Result, Window};
 use appell_estimate::Unknown;
-use appell_recordings::{DataSet, Measured, Role};
+use appell_recordings::{DataSet, Measured, Role, Run};
 
 /// Number of windows, spread over all runs.
 const WINDOWS: usize = 40;
@@ -74,7 +70,7 @@ impl<'a> Judged<'a> {
 
     /// One-step predictions that find a gap, with coloured process noise as well. Over windows there is no process
     /// noise.
-    pub(super) fn with_coloured_noise(mut self) -> Result<Self, DiagnoseError> {
+    pub(super) fn with_coloured_noise(mut self) -> Result<Self> {
         if !self.bench.is_over_windows() && !self.comparison.is_null() {
             self.comparison = coloured::weighed(&self.bench, self.comparison)?;
             self.outside = None;
@@ -99,7 +95,7 @@ pub(super) fn judged<'a>(
     nominal: Fitted,
     over: Bench<'a>,
     stage: &mut impl FnMut(&'static str),
-) -> Result<Judged<'a>, DiagnoseError> {
+) -> Result<Judged<'a>> {
     let mut seen = Seen {
         over: &over,
         bench: &bench,
@@ -195,7 +191,8 @@ impl Comparison {
     /// or with fewer effects, and any other closed loop if it is not predicted better. A filter does not carry the coordinates that effects add. `levels` are those of the
     /// nominal model one step ahead.
     fn without_imitations(&mut self, bench: &Bench<'_>, over: &Bench<'_>, levels: &Fitted) {
-        let taken = |fitted: &Fitted| bench.as_it_is(over, fitted, levels).ok();
+        let levels = (&levels.fit.values[..], &levels.layout);
+        let taken = |fitted: &Fitted| bench.with_levels(over, fitted, levels, SHARES).ok();
         // One-step predictions that diverge tell nothing.
         let Some(without) = taken(self.nominal()) else {
             return;
@@ -246,7 +243,7 @@ fn outdone(
     over: &Bench<'_>,
     nominal: &Fitted,
     best: &Fitted,
-) -> Result<Option<Comparison>, DiagnoseError> {
+) -> Result<Option<Comparison>> {
     let is_closed = bench.input_innovations.is_closed && !bench.is_of_robot;
     if !is_closed || best.members.is_empty() {
         return Ok(None);
@@ -268,7 +265,7 @@ pub(super) fn lengthened<'a>(
     levels: &[(Unknown, f64)],
     whole: &DataSet,
     stage: &mut impl FnMut(&'static str),
-) -> Result<Judged<'a>, DiagnoseError> {
+) -> Result<Judged<'a>> {
     let mut before = length(whole);
     for (times, count, rows) in LONGER {
         let best = judged.comparison.best();
@@ -314,7 +311,7 @@ fn nothing_left(
     nominal: &Fitted,
     known: Vec<Fitted>,
     stepwise: Option<Comparison>,
-) -> Result<Option<Comparison>, DiagnoseError> {
+) -> Result<Option<Comparison>> {
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise.with(bench, known)?),
         None => Comparison::of(bench, nominal.clone(), known, |_| Look::Holds)?,
@@ -329,10 +326,7 @@ fn nothing_left(
 }
 
 /// The ranking by simulations, with some known hypotheses.
-fn simulated(
-    over: &Bench<'_>,
-    known: Vec<Fitted>,
-) -> Result<(Vec<Screened>, Comparison), DiagnoseError> {
+fn simulated(over: &Bench<'_>, known: Vec<Fitted>) -> Result<(Vec<Screened>, Comparison)> {
     let nominal = over.nominal()?;
     let screen = screen(over, &nominal)?;
     let comparison = Comparison::of(over, nominal, known, |_| Look::Holds)?;
@@ -356,28 +350,22 @@ struct Again {
     other: Option<usize>,
 }
 
-impl Again {
-    fn log_likelihood(&self) -> f64 {
-        self.fitted.fit.log_likelihood
-    }
-}
-
 impl Seen<'_, '_> {
     /// The ranking by one-step predictions, `None` if the windows reject it early; and whether the windows confirm it.
     /// They do not if process noise absorbs a missing effect.
-    fn one_step(&mut self, nominal: &Fitted) -> Result<Option<(Comparison, bool)>, DiagnoseError> {
+    fn one_step(&mut self, nominal: &Fitted) -> Result<Option<(Comparison, bool)>> {
         let (bench, over) = (self.bench, self.over);
         let look = |fitted: &Fitted| self.look(fitted, nominal);
         let found = Comparison::of(bench, nominal.clone(), Vec::new(), look)?;
         let Some(mut comparison) = found else {
             return Ok(None);
         };
-        let of_nominal = self.again(nominal).map(Again::log_likelihood);
+        let of_nominal = self.log_likelihood(nominal);
         let Some(again) = self.again(comparison.best()) else {
             return Ok(Some((comparison, true)));
         };
         if let Some(of_nominal) = of_nominal {
-            comparison.stays = over.left(again.log_likelihood() - of_nominal);
+            comparison.stays = over.left(again.fitted.fit.log_likelihood - of_nominal);
         }
         let holds = again.gain.max(again.by_others) < REFUTED;
         Ok(Some((comparison, holds)))
@@ -386,11 +374,7 @@ impl Seen<'_, '_> {
     /// Refitted hypotheses that are comparable with those of the windows: a delayed channel has other samples.
     fn comparable(&self) -> Vec<Fitted> {
         let fits = self.again.values().flatten().map(|again| &again.fitted);
-        let is_late = |&member: &usize| {
-            let acts = self.over.candidate(member).acts;
-            matches!(acts, Acts::Late(_))
-        };
-        fits.filter(|fitted| !fitted.members.iter().any(is_late))
+        fits.filter(|fitted| !self.over.is_late(&fitted.members))
             .cloned()
             .collect()
     }
@@ -412,14 +396,18 @@ impl Seen<'_, '_> {
         again.or_insert_with(fit).as_ref()
     }
 
+    fn log_likelihood(&mut self, fitted: &Fitted) -> Option<f64> {
+        Some(self.again(fitted)?.fitted.fit.log_likelihood)
+    }
+
     /// Validates a hypothesis before others are added to it. A single effect may need another one; but it is rejected
     /// if it shows only one step ahead, together with others that predict.
     fn look(&mut self, fitted: &Fitted, nominal: &Fitted) -> Look {
-        let of_nominal = self.again(nominal).map(Again::log_likelihood);
+        let of_nominal = self.log_likelihood(nominal);
         let Some(again) = self.again(fitted) else {
             return Look::Holds;
         };
-        let gain = of_nominal.map(|nominal| again.log_likelihood() - nominal);
+        let gain = of_nominal.map(|nominal| again.fitted.fit.log_likelihood - nominal);
         let is_idle = gain.is_some_and(|gain| gain < IDLE * again.by_others);
         let lacks = |most: f64| again.by_others >= most;
         if again.gain >= REFUTED_ALONE {
@@ -435,7 +423,7 @@ impl Seen<'_, '_> {
 
 /// The runs, cut into windows of half a typical period: long enough that forces affect the motion, short
 /// enough that errors do not dominate it.
-pub(super) fn windows(set: &DataSet, is_of_robot: bool) -> Result<DataSet, DiagnoseError> {
+pub(super) fn windows(set: &DataSet, is_of_robot: bool) -> Result<DataSet> {
     let windows = if is_of_robot { OF_ROBOT } else { WINDOWS };
     Ok(set.windows(length(set), windows, ROWS)?)
 }
@@ -471,9 +459,5 @@ fn length(set: &DataSet) -> f64 {
 
 /// Duration of the longest run in s.
 fn longest(set: &DataSet) -> f64 {
-    let durations = set
-        .runs
-        .iter()
-        .map(|run| run.times[run.times.len() - 1] - run.times[0]);
-    durations.fold(0.0, f64::max)
+    set.runs.iter().map(Run::duration).fold(0.0, f64::max)
 }

@@ -4,47 +4,23 @@
 //! effects; their amplitudes are fitted like other parameters, with a prior that admits discontinuous laws. The law can
 //! therefore predict runs and be written into a spec.
 
-mod hidden_mass;
-mod hysteresis;
+mod memory;
 mod waves;
 
 use appell_estimate::{Along, Estimation, Unknown};
 
-use super::DiagnoseError;
-use super::bench::Bench;
 use super::calibration::{IMMATERIAL, TIED};
-use super::compare::Comparison;
-use super::evidence::Fitted;
 use super::forms::forms;
-use super::held_out::HeldOut;
 use super::localise::force_unit;
 use super::prediction::noise;
-use super::report::Law;
 use super::scales;
 use super::unknown::{
     Dependence, Leftover, On, Series, Unnamed, leftover, remembered, wave_scores,
 };
+use super::{Bench, Comparison, DiagnoseError, Fitted, HeldOut, Law, Result};
 use crate::effects::{Candidate, EffectModel, Memory};
 use crate::held_out::AHEAD;
 use appell_recordings::{DataSet, Part};
-
-/// The course of a law over its variable.
-struct Course {
-    /// Unit of the force, or of what the factor multiplies.
-    unit: String,
-    variable: String,
-    variable_unit: String,
-    factor: Option<String>,
-    points: Vec<Point>,
-}
-
-/// A point of the course of a law.
-struct Point {
-    variable: f64,
-    force: f64,
-    /// Derivatives of the force by the coefficients.
-    slopes: Vec<f64>,
-}
 
 /// The equations with the law.
 pub(super) struct Lawful {
@@ -82,10 +58,7 @@ pub(super) struct FittedLaw<'l> {
 
 /// The equations with a law for the residual force, if it depends on quantities of the model: in addition to the best
 /// hypothesis, and to the nominal model if that hypothesis may be wrong.
-pub(super) fn lawful(
-    bench: &Bench<'_>,
-    comparison: &Comparison,
-) -> Result<Vec<Lawful>, DiagnoseError> {
+pub(super) fn lawful(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Lawful>> {
     let (best, nominal) = (comparison.best(), comparison.nominal());
     let of_best = comparison.left.clone().filter(|left| {
         let log = comparison.independent * left.log_bayes_factor;
@@ -115,16 +88,15 @@ pub(super) fn measured<'l>(
     bench: &Bench<'_>,
     runs: &DataSet,
     test: &DataSet,
-) -> Option<Result<FittedLaw<'l>, DiagnoseError>> {
-    let evidence = |law: &Result<FittedLaw<'_>, DiagnoseError>| {
+) -> Option<Result<FittedLaw<'l>>> {
+    let evidence = |law: &Result<FittedLaw<'_>>| {
         let found = law.as_ref();
         found.map_or(f64::NEG_INFINITY, |law| law.log_evidence)
     };
     let laws = laws.iter().map(|law| law.fitted(bench, test));
-    let mut laws: Vec<Result<FittedLaw<'l>, DiagnoseError>> = laws.collect();
+    let mut laws: Vec<Result<FittedLaw<'l>>> = laws.collect();
     laws.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
-    let holds = |law: &Result<FittedLaw<'_>, DiagnoseError>, comparison: &mut Comparison| match law
-    {
+    let holds = |law: &Result<FittedLaw<'_>>, comparison: &mut Comparison| match law {
         Ok(law) if law.base.members.len() < comparison.best().members.len() => {
             law.predicts(comparison.best(), bench, runs)
                 .unwrap_or(false)
@@ -139,12 +111,7 @@ pub(super) fn measured<'l>(
 impl FittedLaw<'_> {
     /// Whether it predicts runs better than a hypothesis: a filter may fit a hidden state to a motion that it does not
     /// cause.
-    fn predicts(
-        &self,
-        other: &Fitted,
-        bench: &Bench<'_>,
-        runs: &DataSet,
-    ) -> Result<bool, DiagnoseError> {
+    fn predicts(&self, other: &Fitted, bench: &Bench<'_>, runs: &DataSet) -> Result<bool> {
         let runs = runs.all(Part::Test);
         let noise = noise(bench, other)?;
         let errors = |bench: &Bench<'_>, fitted: &Fitted| {
@@ -156,11 +123,7 @@ impl FittedLaw<'_> {
 }
 
 /// The equations of a hypothesis with a law for its residual.
-fn beside(
-    bench: &Bench<'_>,
-    base: &Fitted,
-    left: Leftover,
-) -> Result<Option<Lawful>, DiagnoseError> {
+fn beside(bench: &Bench<'_>, base: &Fitted, left: Leftover) -> Result<Option<Lawful>> {
     let first = &left.first;
     let brings = |member: &usize| bench.candidate(*member).brings.is_some();
     if first.along != Along::Disturbances || base.members.iter().any(brings) {
@@ -193,18 +156,16 @@ fn of_variable(
     base: &Fitted,
     law: &Unnamed,
     wave: Option<usize>,
-) -> Result<Found, DiagnoseError> {
+) -> Result<Found> {
     let Some(dependence) = dependence(bench, law) else {
         return Ok(None);
     };
     let setup = bench.setup(&base.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let scores = wave_scores(bench, &estimation, base, &[dependence], law.along)?;
-    let mut scores = scores
-        .into_iter()
-        .flatten()
-        .filter(|(place, _)| *place == law.place);
-    let series = scores.next().and_then(|(_, scores)| scores.series(wave));
+    let mut scores = scores.into_iter().flatten();
+    let own = scores.find(|(place, _)| *place == law.place);
+    let series = own.and_then(|(_, scores)| scores.series(wave));
     Ok(series.and_then(|series| {
         let candidate = waves::candidate(bench, dependence, law, wave, &series)?;
         let sizes = series.terms.iter().flat_map(|(_, sizes, _)| *sizes);
@@ -229,7 +190,7 @@ fn of_memory(bench: &Bench<'_>, memory: &Memory) -> Found {
 
 impl Lawful {
     /// Fits the coefficients together with all free parameters of the hypothesis.
-    fn fitted(&self, main: &Bench<'_>, test: &DataSet) -> Result<FittedLaw<'_>, DiagnoseError> {
+    fn fitted(&self, main: &Bench<'_>, test: &DataSet) -> Result<FittedLaw<'_>> {
         let bench = main.beside(&self.effects)?;
         let members: Vec<usize> = (0..self.effects.candidates.len()).collect();
         let setup = bench.setup(&members);
@@ -250,22 +211,6 @@ impl Lawful {
             .map(|&place| fitted.fit.values[place])
             .collect();
         let force = force_unit(&main.effects.mechanism, first.place);
-        let (course, forms) = match &self.kind {
-            Kind::Memory(Memory::HiddenMass(hidden)) => (
-                hidden_mass::course(&force, &hidden.behind, &values),
-                Vec::new(),
-            ),
-            Kind::Memory(Memory::Hysteresis(hysteresis)) => (
-                hysteresis::course(main, force, &hysteresis.along, &values),
-                Vec::new(),
-            ),
-            Kind::Waves(series) => {
-                let dependence = dependence(main, first);
-                let dependence = dependence.ok_or(DiagnoseError::NothingToFit)?;
-                let course = waves::course(main, force, dependence, series, &values);
-                (course, forms(main, &self.base, dependence, first)?)
-            }
-        };
         let covariance = fitted.fit.covariance().ok();
         let free = |place: &usize| {
             let mut free = fitted.fit.free.iter();
@@ -283,22 +228,30 @@ impl Lawful {
             }
             variance.max(0.0).sqrt()
         };
-        let points = course.points.iter();
+        let course = match &self.kind {
+            Kind::Memory(Memory::HiddenMass(hidden)) => {
+                memory::of_hidden_mass(&force, &hidden.behind, &values, deviation)
+            }
+            Kind::Memory(Memory::Hysteresis(hysteresis)) => {
+                memory::of_hysteresis(main, force, &hysteresis.along, &values, deviation)
+            }
+            Kind::Waves(series) => {
+                let dependence = dependence(main, first);
+                let dependence = dependence.ok_or(DiagnoseError::NothingToFit)?;
+                Law {
+                    forms: forms(main, &self.base, dependence, first)?,
+                    ..waves::course(main, force, dependence, series, &values, deviation)
+                }
+            }
+        };
         let law = Law {
             equation: main.effects.info().states[first.place].name.to_string(),
-            unit: course.unit,
             depends_on: first.variable.clone(),
-            variable: course.variable,
-            variable_unit: course.variable_unit,
-            factor: course.factor,
-            curve: points
-                .map(|point| [point.variable, point.force, deviation(&point.slopes)])
-                .collect(),
-            log_bayes_factor: first.log_bayes_factor,
-            forms,
+            log_bayes_factor: first.gains.log_bayes_factor,
+            ..course
         };
         let gain = fitted.fit.log_posterior - self.base.fit.log_posterior;
-        let first = self.left.log_bayes_factor - self.left.first.gain;
+        let first = self.left.log_bayes_factor - self.left.first.gains.gain;
         Ok(FittedLaw {
             left: &self.left,
             log_evidence: self.base.evidence.log() + first + gain,

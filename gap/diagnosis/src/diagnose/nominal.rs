@@ -2,10 +2,9 @@
 
 use appell_estimate::{Effort, Estimation, Fit};
 
-use super::DiagnoseError;
-use super::bench::{Bench, ROUGHLY, SHARES};
-use super::evidence::Fitted;
+use super::bench::{ROUGHLY, SHARES};
 use super::starts::scale_process_noise;
+use super::{Bench, Fitted, Result};
 
 /// Largest number of tenfold increases of the process noise if the filter diverges.
 const LOST: usize = 4;
@@ -16,7 +15,7 @@ impl Bench<'_> {
     /// The nominal model, its parameters within their tolerances. Noise levels are fitted first: with levels that are
     /// far too small the parameters would leave their tolerances to fit noise. If the filter diverges, as with a wrong
     /// model of an unstable mechanism, the search is repeated with larger initial process noise.
-    pub(super) fn nominal(&self) -> Result<Fitted, DiagnoseError> {
+    pub(super) fn nominal(&self) -> Result<Fitted> {
         let setup = self.setup(&[]);
         let estimation = Estimation::new(&setup, &self.recordings)?;
         let mut start = self.problem.start.clone();
@@ -32,7 +31,7 @@ impl Bench<'_> {
     }
 
     /// The model as stated, with the noise levels that fit.
-    pub(super) fn stated(&self) -> Result<Fitted, DiagnoseError> {
+    pub(super) fn stated(&self) -> Result<Fitted> {
         let setup = self.setup(&[]);
         let estimation = Estimation::new(&setup, &self.recordings)?;
         let mut start = self.problem.start.clone();
@@ -47,7 +46,7 @@ impl Bench<'_> {
 
     /// Noise levels, or likelier ones that a search finds from less process noise: the rates of stiff servos may be taken
     /// for process noise or for measured ones, and a search does not cross from one to the other.
-    fn quieter(&self, estimation: &Estimation<'_>, first: Fit) -> Result<Vec<f64>, DiagnoseError> {
+    fn quieter(&self, estimation: &Estimation<'_>, first: Fit) -> Result<Vec<f64>> {
         let mut start = first.values.clone();
         scale_process_noise(estimation, &mut start, QUIETER)?;
         let second = Fit::quick(estimation, &start, &self.problem.levels, ROUGHLY);
@@ -57,11 +56,7 @@ impl Bench<'_> {
         })
     }
 
-    fn nominal_from(
-        &self,
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
+    fn nominal_from(&self, estimation: &Estimation<'_>, start: &[f64]) -> Result<Fitted> {
         let mut start = start.to_vec();
         self.loosen(estimation, &mut start)?;
         let levels = Fit::quick(estimation, &start, &self.problem.levels, ROUGHLY)?;

@@ -11,17 +11,14 @@ use appell_estimate::{Estimation, Unknown};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
-use super::held_out::HeldOut;
 use super::starts::scale_process_noise;
+use super::{Bench, Fitted, HeldOut, Result, whole};
 use crate::held_out::origins;
 
 /// Largest number of rows of a run from which predictions start.
 const ORIGINS: usize = 75;
 /// Number of rows from which expected errors are computed.
-const EXPECTED_FROM: usize = 25;
+pub(super) const EXPECTED_FROM: usize = 25;
 /// Largest number of tenfold increases of the process noise.
 const MORE: usize = 6;
 /// Number of bootstrap samples.
@@ -111,25 +108,20 @@ impl Paired {
 
     /// Quantiles 2.5 and 97.5 % of a function of the mean squares; with a fixed seed.
     pub(super) fn interval95(&self, number: impl Fn(&[f64]) -> f64) -> [f64; 2] {
-        let mut drawn = self.drawn(number);
+        let mut random = SplitMix64::seed_from_u64(1);
+        let count = self.sums.len();
+        let mut below = || usize::try_from(random.next_u64() % count.max(1) as u64).unwrap_or(0);
+        let numbers = (0..DRAWS).map(|_| {
+            let blocks: Vec<usize> = (0..count).map(|_| below()).collect();
+            number(&self.over(blocks.into_iter()))
+        });
+        let mut drawn: Vec<f64> = numbers.collect();
         drawn.sort_by(f64::total_cmp);
         let at = |part: usize| {
             let one = drawn.get(part * drawn.len() / 1000);
             one.copied().unwrap_or(f64::NAN)
         };
         [at(25), at(975)]
-    }
-
-    fn drawn(&self, number: impl Fn(&[f64]) -> f64) -> Vec<f64> {
-        let mut random = SplitMix64::seed_from_u64(1);
-        let count = self.sums.len();
-        let mut below = || usize::try_from(random.next_u64() % count.max(1) as u64).unwrap_or(0);
-        (0..DRAWS)
-            .map(|_| {
-                let drawn: Vec<usize> = (0..count).map(|_| below()).collect();
-                number(&self.over(drawn.into_iter()))
-            })
-            .collect()
     }
 }
 
@@ -141,7 +133,7 @@ impl HeldOut {
         fitted: &Fitted,
         noise: &[f64],
         horizon: f64,
-    ) -> Result<Errors, DiagnoseError> {
+    ) -> Result<Errors> {
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
         let values = taken_over(bench, fitted, &estimation)?;
@@ -161,11 +153,8 @@ impl HeldOut {
                     continue;
                 }
                 let block = (recording.times()[one.origin] - recording.times()[0]) / length;
-                // A count of blocks in memory.
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-                let block = block as usize;
                 let square = (one.residual / noise[one.channel]).powi(2);
-                errors.add([run, block], one.channel, square);
+                errors.add([run, whole(block)], one.channel, square);
             }
         }
         Ok(errors)
@@ -178,15 +167,12 @@ impl HeldOut {
         fitted: &Fitted,
         noise: &[f64],
         horizon: f64,
-    ) -> Result<f64, DiagnoseError> {
+    ) -> Result<f64> {
         if let Some(sensors) = bench.noise_of_sensors() {
-            let parts = sensors
-                .iter()
-                .zip(noise)
-                .filter(|(_, unit)| unit.is_finite());
-            let squares: Vec<f64> = parts
-                .map(|(sensor, unit)| (sensor / unit).powi(2))
-                .collect();
+            let parts = sensors.iter().zip(noise);
+            let parts = parts.filter(|(_, unit)| unit.is_finite());
+            let squares = parts.map(|(sensor, unit)| (sensor / unit).powi(2));
+            let squares: Vec<f64> = squares.collect();
             return Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt());
         }
         let setup = bench.setup(&fitted.members);
@@ -209,7 +195,7 @@ impl HeldOut {
 }
 
 /// The model with the parameters stated by the data set, and the noise levels of a fit.
-pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
+pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted> {
     let mut stated = fitted.clone();
     bench.perfected(&mut stated)?;
     // Models without creeping contacts have fewer parameters: the first ones.
@@ -229,7 +215,7 @@ pub(super) fn taken_over(
     bench: &Bench<'_>,
     fitted: &Fitted,
     estimation: &Estimation<'_>,
-) -> Result<Vec<f64>, DiagnoseError> {
+) -> Result<Vec<f64>> {
     let mut values = bench.carried(fitted, estimation);
     bench.begin(estimation, &mut values)?;
     bench.hide(&fitted.members, estimation, &mut values)?;
@@ -251,7 +237,7 @@ pub(super) fn followed(
     bench: &Bench<'_>,
     fitted: &Fitted,
     estimation: &Estimation<'_>,
-) -> Result<Vec<f64>, DiagnoseError> {
+) -> Result<Vec<f64>> {
     if bench.is_over_windows() {
         taken_over(bench, fitted, estimation)
     } else {
@@ -260,7 +246,7 @@ pub(super) fn followed(
 }
 
 /// Noise of the channels under a hypothesis.
-pub(super) fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> {
+pub(super) fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>> {
     let channels = 0..bench.measured.len();
     let noise = channels.map(|channel| {
         let place = fitted.layout.place(Unknown::Noise(channel))?;

@@ -2,23 +2,31 @@
 
 use appell_estimate::{Estimation, Setup, Unknown};
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
-use crate::effects::Part as Role;
-use crate::identify::begin;
+use super::bench::wrong;
+use super::{Bench, Fitted, Result};
+use crate::effects::{Acts, Part};
+use crate::identify::{Problem, begin};
 
 /// Factor on the standard deviation of initial values that are measured: the filter uses the first row once more.
 const CAUTION: f64 = 10.0;
+/// Largest initial delay relative to the longest one.
+const BELOW: f64 = 0.9;
+
+/// The best sizes of a candidate.
+#[derive(Debug, Clone)]
+pub(super) struct SizeEstimates {
+    /// Index of the candidate.
+    pub(super) candidate: usize,
+    /// One for each of its directions.
+    pub(super) values: Vec<f64>,
+    /// Their standard deviations.
+    pub(super) deviations: Vec<f64>,
+}
 
 impl Bench<'_> {
     /// States at the first rows. Channels are assumed to measure the quantities of the model without members; the
     /// outputs that replace them are close.
-    pub(super) fn begin(
-        &self,
-        estimation: &Estimation<'_>,
-        values: &mut [f64],
-    ) -> Result<(), DiagnoseError> {
+    pub(super) fn begin(&self, estimation: &Estimation<'_>, values: &mut [f64]) -> Result<()> {
         let mut setup = estimation.setup().clone();
         let plain = self.measured_by(setup.model);
         for (channel, measures) in setup.channels.iter_mut().zip(plain) {
@@ -33,7 +41,7 @@ impl Bench<'_> {
         &self,
         estimation: &Estimation<'_>,
         values: &mut [f64],
-    ) -> Result<(), DiagnoseError> {
+    ) -> Result<()> {
         let mut later = values.to_vec();
         self.begin(estimation, &mut later)?;
         let layout = estimation.layout();
@@ -130,7 +138,7 @@ impl Bench<'_> {
         members: &[usize],
         estimation: &Estimation<'_>,
         values: &mut [f64],
-    ) -> Result<(), DiagnoseError> {
+    ) -> Result<()> {
         /// Initial standard deviation of the rate, in sizes per second.
         const CROSSED: f64 = 1.0;
         let (info, layout) = (estimation.setup().model.info(), estimation.layout());
@@ -138,7 +146,7 @@ impl Bench<'_> {
             let spreads = match (candidate.brings, candidate.hides) {
                 (Some(_), _) => {
                     let own = self.own(candidate);
-                    let size = own.iter().find(|(_, role)| *role == Role::Size);
+                    let size = own.iter().find(|(_, role)| *role == Part::Size);
                     let size = size.map_or(0.0, |(place, _)| values[*place].abs());
                     [CROSSED * size, size]
                 }
@@ -162,7 +170,7 @@ pub(super) fn scale_process_noise(
     estimation: &Estimation<'_>,
     values: &mut [f64],
     factor: f64,
-) -> Result<(), DiagnoseError> {
+) -> Result<()> {
     for index in 0..estimation.setup().disturbances.len() {
         values[estimation.layout().place(Unknown::Disturbance(index))?] *= factor;
     }
@@ -204,4 +212,115 @@ fn moved(state: usize, [was, is]: [usize; 2]) -> Option<usize> {
     } else {
         Some(was + state - is)
     }
+}
+
+/// Writes a `part` of the best sizes as initial values, none of them at a bound.
+pub(super) fn place(
+    bench: &Bench<'_>,
+    estimation: &Estimation<'_>,
+    sizes: &SizeEstimates,
+    part: f64,
+    values: &mut [f64],
+) -> Result<()> {
+    let layout = estimation.layout();
+    let setup = estimation.setup();
+    let candidate = bench.candidate(sizes.candidate);
+    let first = sizes.values.first().map_or(0.0, |value| part * value);
+    let now = match candidate.acts {
+        Acts::Parameter(index) => values[index],
+        _ => 0.0,
+    };
+    let mut set = |unknown, value: f64| -> Result<()> {
+        values[layout.place(unknown)?] = value;
+        Ok(())
+    };
+    match candidate.acts {
+        Acts::Items => {
+            let mut direction = 0;
+            for (index, role) in bench.own(candidate) {
+                let unknown = Unknown::Parameter(index);
+                let quantity = &bench.effects.info().parameters[index];
+                match role {
+                    Part::Switch => set(unknown, 1.0)?,
+                    Part::Shape(_) => {
+                        set(unknown, quantity.value)?;
+                        continue;
+                    }
+                    Part::Size | Part::Term(_) => {
+                        let size = part * sizes.values[direction];
+                        let least = sizes.deviations[direction];
+                        let size = if size.abs() > 0.0 { size } else { least };
+                        set(unknown, size)?;
+                    }
+                }
+                direction += 1;
+            }
+        }
+        Acts::Parameter(index) => {
+            let most = wrong(bench.set.parameters[index].value);
+            let [low, high] = bench.effects.info().parameters[index].range;
+            let moved = now + first.clamp(-most, most);
+            set(Unknown::Parameter(index), moved.clamp(low, high))?;
+        }
+        acts => {
+            if let Some(free) = bench.of_signal(acts, setup) {
+                let [low, high] = free.range;
+                let value = match acts {
+                    Acts::Scale(_) => 1.0 + first,
+                    Acts::Late(_) => first.clamp(0.0, high),
+                    Acts::Lag(_) | Acts::Slow(_) => first.clamp(2.0 * low, 0.2 * high),
+                    Acts::Delay(_) => first.clamp(0.0, BELOW * high),
+                    _ => first,
+                };
+                set(free.unknown, value)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Maximises the likelihood over the process noise of each equation in turn, by powers of ten: the levels of different
+/// equations are nearly independent.
+pub(super) fn level(estimation: &Estimation<'_>, problem: &mut Problem) -> Result<()> {
+    let layout = estimation.layout();
+    let mut best = estimation.log_likelihood(&problem.start)?;
+    for index in 0..estimation.setup().disturbances.len() {
+        let place = layout.place(Unknown::Disturbance(index))?;
+        let mut levels = problem.levels.iter();
+        let level = levels.find(|free| free.unknown == Unknown::Disturbance(index));
+        let Some([low, high]) = level.map(|free| free.range) else {
+            continue;
+        };
+        for factor in [10.0, 0.1] {
+            let mut moved = problem.start.clone();
+            loop {
+                moved[place] *= factor;
+                if !(low..=high).contains(&moved[place]) {
+                    break;
+                }
+                match estimation.log_likelihood(&moved) {
+                    Ok(likelihood) if likelihood > best => {
+                        best = likelihood;
+                        problem.start.clone_from(&moved);
+                    }
+                    _ => break,
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Initial standard deviations of the states: typical sizes of unmeasured ones.
+pub(super) fn sizes(estimation: &Estimation<'_>, problem: &Problem) -> Result<Vec<f64>> {
+    let layout = estimation.layout();
+    let states = 0..estimation.setup().model.info().state_len();
+    let size = |state| {
+        let mut most = 0.0_f64;
+        for run in 0..estimation.recordings().len() {
+            most = most.max(problem.start[layout.place(Unknown::Spread { run, state })?]);
+        }
+        Ok(most)
+    };
+    states.map(size).collect()
 }

@@ -1,8 +1,8 @@
 //! The verdict: what the leading hypothesis says, after predictions of the held-out runs.
 
-use super::bench::Bench;
 use super::calibration::{IMMATERIAL, MUCH, TIED};
-use super::report::{HowFar, Hypothesis, Left, Report, Share, UNKNOWN, Where};
+use super::report::UNKNOWN;
+use super::{Bench, HowFar, Hypothesis, Left, Report, Share, Where};
 
 /// The result in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -53,10 +53,8 @@ impl GapVerdict {
         let stays = far.budget.iter().find(|part| part.is_rest());
         let most_stays = stays.is_some_and(|part| part.closed > MOST);
         // An effect that closes nothing is no explanation, however significant it is.
-        let closes = far
-            .budget
-            .iter()
-            .any(|part| part.is_effect() && part.is_material);
+        let mut parts = far.budget.iter();
+        let closes = parts.any(|part| part.is_effect() && part.is_material);
         if self == Self::Explained && names_effects && !far.budget.is_empty() && !closes {
             return Self::Ambiguous;
         }
@@ -174,7 +172,7 @@ fn forget_immaterial_law(which: &mut [Hypothesis], far: &HowFar) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::report::{LAW, REFIT, REST};
-    use super::super::value::Value;
+    use super::super::yardstick::Value;
     use super::*;
 
     fn far(closed: f64, is_material: bool) -> HowFar {
@@ -241,38 +239,29 @@ mod tests {
             &[(REFIT, 1.05), (REST, -0.05)][..],
             &[(REFIT, 0.999), (LAW, 0.0), (REST, 0.001)],
         ] {
-            let (effects, probability) = first(0.95, &with_budget(budget));
-            assert!(effects.is_empty() && (0.7..0.8).contains(&probability));
             // Beside a law that was certain no other has a share.
-            let (effects, probability) = first(1.0, &with_budget(budget));
-            assert!(effects.is_empty() && (0.9..1.0).contains(&probability));
+            for (unknown, range) in [(0.95, 0.7..0.8), (1.0, 0.9..1.0)] {
+                let (effects, probability) = first(unknown, &with_budget(budget));
+                assert!(effects.is_empty() && range.contains(&probability));
+            }
         }
-        // The law closes a part, or much stays, or a part that is small and many times the noise.
-        for budget in [
-            &[(REFIT, 0.7), (LAW, 0.29), (REST, 0.01)],
-            &[(REFIT, 0.6), (LAW, 0.0), (REST, 0.4)],
-            &[(REFIT, 0.985), (LAW, 0.014), (REST, 0.001)],
-        ] {
-            assert_eq!(
-                first(0.95, &with_budget(budget)),
-                (vec![UNKNOWN.to_owned()], 0.95)
-            );
-        }
-    }
-
-    #[test]
-    fn errors_that_the_noise_explains_leave_no_law() {
-        // Nothing of the gap closes, as there is none.
-        let far = |error: f64, noise_floor: f64| HowFar {
+        // Nothing of the gap closes, as there is none: the noise explains the errors.
+        let of_noise = |error: f64, noise_floor: f64| HowFar {
             nominal: error,
             refitted: error,
             noise_floor,
             ..with_budget(&[(REFIT, 0.0), (REST, 1.0)])
         };
-        let (effects, _) = first(0.95, &far(14.2, 14.7));
-        assert!(effects.is_empty());
-        // Errors above the noise, and far below what process noise would do.
-        for far in [far(14.2, 12.0), far(112.0, 505.0)] {
+        assert!(first(0.95, &of_noise(14.2, 14.7)).0.is_empty());
+        for far in [
+            // The law closes a part, or much stays, or a part that is small and many times the noise.
+            with_budget(&[(REFIT, 0.7), (LAW, 0.29), (REST, 0.01)]),
+            with_budget(&[(REFIT, 0.6), (LAW, 0.0), (REST, 0.4)]),
+            with_budget(&[(REFIT, 0.985), (LAW, 0.014), (REST, 0.001)]),
+            // Errors above the noise, and far below what process noise would do.
+            of_noise(14.2, 12.0),
+            of_noise(112.0, 505.0),
+        ] {
             assert_eq!(first(0.95, &far), (vec![UNKNOWN.to_owned()], 0.95));
         }
     }

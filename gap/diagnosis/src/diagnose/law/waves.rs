@@ -2,10 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::super::bench::Bench;
 use super::super::localise::force_unit;
 use super::super::unknown::{Dependence, Series, Unnamed};
-use super::{Course, Point};
+use super::super::{Bench, Law};
 use crate::effects::Candidate;
 
 /// Number of points at which the law is reported: at least, and for each half of its shortest period.
@@ -57,15 +56,16 @@ pub(super) fn candidate(
     Some(Candidate::measured(mechanism, speed, &force, &numbers))
 }
 
-/// The law, whose coefficients are `values`.
+/// The course of the law, whose coefficients are `values`. `deviation` is that of the force, from its derivatives by these.
 pub(super) fn course(
     main: &Bench<'_>,
     force_unit: String,
     dependence: Dependence<'_>,
     series: &Series,
     values: &[f64],
-) -> Course {
-    let (variable_unit, scale) = dependence.unit(main);
+    deviation: impl Fn(&[f64]) -> f64,
+) -> Law {
+    let (variable, variable_unit, scale) = dependence.letters(main);
     let written = dependence.written(main);
     let (low, high) = dependence.range;
     let shortest = series.terms.iter().map(|(wave, ..)| wave + 1).max();
@@ -86,21 +86,18 @@ pub(super) fn course(
             // The derivative by the frequency of a single harmonic.
             slopes.push(x * (values[0] * slopes[1] - values[1] * slopes[0]));
         }
-        Point {
-            variable: x / scale,
-            force,
-            slopes,
-        }
+        [x / scale, force, deviation(&slopes)]
     };
     let factor_unit = written.as_ref().and_then(|own| own.factor_unit.as_ref());
-    Course {
+    Law {
         unit: match factor_unit {
             Some(factor) => format!("{force_unit}/({factor})"),
             None => force_unit,
         },
-        variable: dependence.letters(main).0,
+        variable,
         variable_unit,
-        points: (0..points).map(point).collect(),
+        curve: (0..points).map(point).collect(),
         factor: written.and_then(|own| own.factor),
+        ..Law::default()
     }
 }

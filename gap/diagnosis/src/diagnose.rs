@@ -65,7 +65,6 @@ mod localise;
 mod nominal;
 mod outside;
 mod prediction;
-mod prior;
 mod reading;
 mod report;
 mod scales;
@@ -194,8 +193,8 @@ fn diagnosed(
     by_filter(&set, before, [&whole, &fitted], &model, options, stage)
 }
 
-/// The diagnosis by the innovations of a filter and by simulations. The training runs are whole runs, and segments of them
-/// that are fitted, with a limited number of rows.
+/// The diagnosis by the innovations of a filter and by simulations. The training runs are whole runs, and segments of
+/// them that are fitted, with a limited number of rows.
 fn by_filter(
     set: &DataSet,
     before: Option<&DataSet>,
@@ -304,8 +303,8 @@ fn by_filter(
     })
 }
 
-/// The leader of a report, where the `best` hypothesis of the library is known: an alternative, with its held-out runs, or
-/// the law of a cause outside the library.
+/// The leader of a report, where the `best` hypothesis of the library is known: an alternative, with its held-out runs,
+/// or the law of a cause outside the library.
 fn leader_of<'l>(
     report: &Report,
     best: Leader<'l>,

@@ -93,8 +93,8 @@ impl Advice {
         advice
     }
 
-    /// The hypothesis, numbered from 1, that has all certain effects and no other, with sizes that agree with those of the
-    /// leading one.
+    /// The hypothesis, numbered from 1, that has all certain effects and no other, with sizes that agree with those of
+    /// the leading one.
     pub fn hypothesis(&self, report: &Report) -> Option<usize> {
         let first = report.leading()?;
         let is_certain = |one: &Hypothesis| {

@@ -1,10 +1,9 @@
 //! The report of a comparison: the hypotheses with their estimates and ties, and the residual of the best one.
 
 use super::alternative::Rival;
-use super::calibration::{SEARCHED, TIED, tempered};
+use super::calibration::{SEARCHED, TIED, names, of_count, prior, tempered};
 use super::compare::has_deviation;
 use super::law::FittedLaw;
-use super::prior::{names, of_count, prior};
 use super::report::LAW;
 use super::screen::{Screened, imitated};
 use super::yardstick::Yardsticks;
@@ -163,8 +162,8 @@ fn which(
 }
 
 /// Indices of the fits that are equivalent to the best one but for their names, such as a bias of a motor and a constant
-/// force along it: no experiment can distinguish them, so they share one probability. Their evidence is the same within the accuracy of searches,
-/// and about the best one the sensitivities of their other members are linearly dependent.
+/// force along it: no experiment can distinguish them, so they share one probability. Their evidence is the same within
+/// the accuracy of searches, and about the best one the sensitivities of their other members are linearly dependent.
 fn twins(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<usize>> {
     let best = comparison.best();
     let is_alike = |place: &usize| {

@@ -241,8 +241,8 @@ impl<'a> Bench<'a> {
         setup
     }
 
-    /// Difference in log likelihood between a hypothesis with delayed channels and another one, on the rows that the delay
-    /// leaves.
+    /// Difference in log likelihood between a hypothesis with delayed channels and another one, on the rows that the
+    /// delay leaves.
     pub(super) fn gain_of_late(&self, from: &Fitted, to: &Fitted) -> Result<f64> {
         let (mut before, mut after) = (self.setup(&from.members), self.setup(&to.members));
         let channels = before.channels.iter_mut().zip(&mut after.channels);
@@ -551,8 +551,8 @@ fn admit(setup: &mut Setup<'_>, acts: Acts, step: f64) {
     }
 }
 
-/// Prior standard deviation of the error of a value that is in error; of a relative error, which is stated as zero, relative
-/// to one.
+/// Prior standard deviation of the error of a value that is in error; of a relative error, which is stated as zero,
+/// relative to one.
 pub(super) fn wrong(value: f64) -> f64 {
     let size = if value == 0.0 { 1.0 } else { value.abs() };
     WRONG * size

@@ -41,8 +41,8 @@ pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
     determines_forces(set, options, FEWEST)
 }
 
-/// Whether the mechanism is a robot, which simulations over windows judge: the same, with fewer joints if it was read from
-/// the file of a robot.
+/// Whether the mechanism is a robot, which simulations over windows judge: the same, with fewer joints if it was read
+/// from the file of a robot.
 pub(super) fn is_of_robot(set: &DataSet, options: &Options) -> bool {
     let fewest = if set.robot.is_some() {
         FEWEST_OF_FILE

@@ -6,11 +6,10 @@ use appell_estimate::Fit;
 
 use super::budget;
 use super::calibration::{
-    IMMATERIAL, MUCH, Rest, TIED, inexact, tempered, unlisted, unlisted_alone,
-    unlisted_beside_an_effect, unlisted_beside_nothing,
+    IMMATERIAL, MUCH, NO_GAP, Rest, TIED, inexact, names, prior, tempered, unlisted,
+    unlisted_alone, unlisted_beside_an_effect, unlisted_beside_nothing,
 };
 use super::prediction::{self, Paired, stated};
-use super::prior::{NO_GAP, names, prior};
 use super::search::{Look, SLACK, Search};
 use super::unknown::{Leftover, leftover};
 use super::whiteness::independent;

@@ -192,8 +192,8 @@ fn groups(
 }
 
 /// Change of the log evidence if the values of a fit with these places and log prior densities may be separate or the
-/// same, with the same probability; none if they are not determined. They are sizes of an effect at a group of sites that may
-/// be one and the same, such as the delay of all drives or of the position and the rate from one encoder.
+/// same, with the same probability; none if they are not determined. They are sizes of an effect at a group of sites
+/// that may be one and the same, such as the delay of all drives or of the position and the rate from one encoder.
 fn of_group(fit: &Fit, places: &[(usize, f64)]) -> f64 {
     let covariance = fit.covariance().ok();
     let gain = covariance.and_then(|own| of_common(&fit.coordinates, &own, places));

@@ -51,7 +51,8 @@ pub(super) fn force_laws(
     Ok((over_its_variable(bench.effects, place, &steps), joints))
 }
 
-/// The force in the equation with the greatest share over the variable that explains most of the law, or of the force itself without a law.
+/// The force in the equation with the greatest share over the variable that explains most of the law, or of the force
+/// itself without a law.
 pub(super) fn over_its_variable(
     model: &EffectModel,
     place: &Where,

@@ -125,8 +125,8 @@ pub(super) fn judged<'a>(
         }
         found
     };
-    // Without an effect over its windows a robot is judged by the innovations of the nominal model, and so is a closed loop
-    // whose windows show nothing but imitations of disturbances.
+    // Without an effect over its windows a robot is judged by the innovations of the nominal model, and so is a closed
+    // loop whose windows show nothing but imitations of disturbances.
     let shows_nothing = of_windows
         .as_ref()
         .is_some_and(|(_, windows)| none(windows));
@@ -186,10 +186,10 @@ pub(super) fn judged<'a>(
 }
 
 impl Comparison {
-    /// Over windows, where there is no process noise, effects may imitate the disturbances to which a controller responds:
-    /// hypotheses are left out if one step ahead, with process noise, a robot is predicted worse than by the nominal model
-    /// or with fewer effects, and any other closed loop if it is not predicted better. A filter does not carry the coordinates that effects add. `levels` are those of the
-    /// nominal model one step ahead.
+    /// Over windows, where there is no process noise, effects may imitate the disturbances to which a controller
+    /// responds: hypotheses are left out if one step ahead, with process noise, a robot is predicted worse than by the
+    /// nominal model or with fewer effects, and any other closed loop if it is not predicted better. A filter does not
+    /// carry the coordinates that effects add. `levels` are those of the nominal model one step ahead.
     fn without_imitations(&mut self, bench: &Bench<'_>, over: &Bench<'_>, levels: &Fitted) {
         let levels = (&levels.fit.values[..], &levels.layout);
         let taken = |fitted: &Fitted| bench.with_levels(over, fitted, levels, SHARES).ok();
@@ -236,8 +236,9 @@ impl Comparison {
     }
 }
 
-/// The comparison one step ahead, with coloured process noise, of the nominal model and a hypothesis that leads over windows,
-/// if the former leads there: the command of a controller answers disturbances, so that windows without them are biased.
+/// The comparison one step ahead, with coloured process noise, of the nominal model and a hypothesis that leads over
+/// windows, if the former leads there: the command of a controller answers disturbances, so that windows without them
+/// are biased.
 fn outdone(
     bench: &Bench<'_>,
     over: &Bench<'_>,

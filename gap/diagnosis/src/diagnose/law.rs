@@ -4,8 +4,7 @@
 //! effects; their amplitudes are fitted like other parameters, with a prior that admits discontinuous laws. The law can
 //! therefore predict runs and be written into a spec.
 
-mod memory;
-mod waves;
+mod course;
 
 use appell_estimate::{Along, Estimation, Unknown};
 
@@ -167,7 +166,7 @@ fn of_variable(
     let own = scores.find(|(place, _)| *place == law.place);
     let series = own.and_then(|(_, scores)| scores.series(wave));
     Ok(series.and_then(|series| {
-        let candidate = waves::candidate(bench, dependence, law, wave, &series)?;
+        let candidate = course::candidate(bench, dependence, law, wave, &series)?;
         let sizes = series.terms.iter().flat_map(|(_, sizes, _)| *sizes);
         let start = sizes.collect();
         Some((candidate, Kind::Waves(series), start))
@@ -228,19 +227,19 @@ impl Lawful {
             }
             variance.max(0.0).sqrt()
         };
-        let course = match &self.kind {
+        let law = match &self.kind {
             Kind::Memory(Memory::HiddenMass(hidden)) => {
-                memory::of_hidden_mass(&force, &hidden.behind, &values, deviation)
+                course::of_hidden_mass(&force, &hidden.behind, &values, deviation)
             }
             Kind::Memory(Memory::Hysteresis(hysteresis)) => {
-                memory::of_hysteresis(main, force, &hysteresis.along, &values, deviation)
+                course::of_hysteresis(main, force, &hysteresis.along, &values, deviation)
             }
             Kind::Waves(series) => {
                 let dependence = dependence(main, first);
                 let dependence = dependence.ok_or(DiagnoseError::NothingToFit)?;
                 Law {
                     forms: forms(main, &self.base, dependence, first)?,
-                    ..waves::course(main, force, dependence, series, &values, deviation)
+                    ..course::of_waves(main, force, dependence, series, &values, deviation)
                 }
             }
         };
@@ -248,7 +247,7 @@ impl Lawful {
             equation: main.effects.info().states[first.place].name.to_string(),
             depends_on: first.variable.clone(),
             log_bayes_factor: first.gains.log_bayes_factor,
-            ..course
+            ..law
         };
         let gain = fitted.fit.log_posterior - self.base.fit.log_posterior;
         let first = self.left.log_bayes_factor - self.left.first.gains.gain;

@@ -28,8 +28,8 @@ const OUTSIDE: f64 = 8.0;
 /// Largest part of outlying predictions: more frequent ones have a cause in the mechanism.
 const RARE: f64 = 0.1;
 /// Smallest number of overlapping predictions that an event spoils: a force changes the speeds, and with them the
-/// predictions from all origins shortly before, while the torque of a joint at the moment when its friction turns round is
-/// off in a single one.
+/// predictions from all origins shortly before, while the torque of a joint at the moment when its friction turns round
+/// is off in a single one.
 const LASTING: usize = 2;
 /// Largest number of reported windows.
 const MOST_WINDOWS: usize = 20;

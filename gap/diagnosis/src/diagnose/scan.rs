@@ -8,10 +8,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-use appell_estimate::{Estimation, Innovation, Unknown};
+use appell_estimate::{Estimation, Innovation};
 
-use super::calibration::TIED;
-use super::prior::names;
+use super::calibration::{TIED, names};
 use super::scales::exerted;
 use super::search::{IMITATED, LEADING, Search};
 use super::sets::{Set, Sets};
@@ -176,14 +175,12 @@ impl<'s, 'a> Scan<'s, 'a> {
                 self.attempt(centre / factor)?;
             }
         }
-        let setup = self.bench.setup(self.members);
-        let estimation = Estimation::new(&setup, &self.bench.recordings)?;
         Ok(Some(Set {
             sizes: sizes(self.members, self.value),
             log_posterior: self.likelihood,
             members: self.members.to_vec(),
             levels: 1.0,
-            starts: vec![self.shaped(&estimation, self.value)?],
+            starts: vec![self.shaped(self.value)],
         }))
     }
 
@@ -196,7 +193,7 @@ impl<'s, 'a> Scan<'s, 'a> {
         for sizes in sizes(self.members, value) {
             place(bench, &estimation, &sizes, 1.0, &mut values)?;
         }
-        for (place, value) in self.shaped(&estimation, value)? {
+        for (place, value) in self.shaped(value) {
             values[place] = value;
         }
         // With too little noise the filter may diverge.
@@ -204,13 +201,9 @@ impl<'s, 'a> Scan<'s, 'a> {
         Ok(bench.weight * likelihood.unwrap_or(f64::NEG_INFINITY))
     }
 
-    /// The place of the parameter that is tried, with a value.
-    fn shaped(&self, estimation: &Estimation<'_>, value: f64) -> Result<Vec<(usize, f64)>> {
-        let shape = self.shape.map(|shape| {
-            let place = estimation.layout().place(Unknown::Parameter(shape))?;
-            Ok((place, value))
-        });
-        shape.into_iter().collect()
+    /// The parameter that is tried, with a value.
+    fn shaped(&self, value: f64) -> Vec<(usize, f64)> {
+        self.shape.iter().map(|&shape| (shape, value)).collect()
     }
 }
 

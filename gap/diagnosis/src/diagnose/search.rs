@@ -7,8 +7,7 @@ use std::collections::BTreeSet;
 
 use appell_estimate::Estimation;
 
-use super::calibration::TIED;
-use super::prior::{names, prior};
+use super::calibration::{TIED, names, prior};
 use super::sets::{Set, Sets, is_fixed};
 use super::starts::{place, scale_process_noise};
 use super::{Bench, DiagnoseError, Fitted, Result};
@@ -33,8 +32,8 @@ const PARTS: [f64; 4] = [0.5, 0.2, 0.05, 0.01];
 /// Log posterior of the values below that of the best hypothesis from which a slow search is given up.
 pub(super) const SLACK: f64 = 40.0;
 /// Part of the gain of the re-fitted parameters that a delay of all drives has to reach with the others as stated, of the
-/// gain of the best single effect that others have to promise, and of the gain of the best hypothesis that a single effect
-/// of a robot has to reach for sets about it.
+/// gain of the best single effect that others have to promise, and of the gain of the best hypothesis that a single
+/// effect of a robot has to reach for sets about it.
 pub(super) const IMITATED: f64 = 0.5;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters are not identifiable";
@@ -469,9 +468,9 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// A delayed channel loses rows: its likelihood is that of another hypothesis plus the gain on the remaining rows. Over
-    /// windows, which have few rows, that is the best one without delayed channels, so that what both explain counts on all
-    /// rows; otherwise it is the nominal model.
+    /// A delayed channel loses rows: its likelihood is that of another hypothesis plus the gain on the remaining rows.
+    /// Over windows, which have few rows, that is the best one without delayed channels, so that what both explain
+    /// counts on all rows; otherwise it is the nominal model.
     pub(super) fn count_late(&self, fitted: &mut Fitted) -> Result<()> {
         if !self.bench.is_late(&fitted.members) {
             return Ok(());

@@ -75,36 +75,44 @@ impl Bench<'_> {
     ) -> Vec<f64> {
         let mut values = to.nominal();
         let (setup, was) = (to.setup(), self.setup(&from.members));
-        let mut pairs: Vec<(Unknown, Unknown)> = Vec::new();
-        let same = |unknown| (unknown, unknown);
         let info = setup.model.info();
-        let parameters = (0..info.parameter_len()).filter_map(|is| Some((before(is)?, is)));
-        pairs.extend(parameters.map(|(was, is)| (Unknown::Parameter(was), Unknown::Parameter(is))));
-        pairs.extend((0..setup.disturbances.len()).map(|d| same(Unknown::Disturbance(d))));
-        for channel in 0..setup.channels.len() {
-            let of_channel = [
-                Unknown::Noise(channel),
-                Unknown::Bias(channel),
-                Unknown::Scale(channel),
-            ];
-            pairs.extend(of_channel.map(same));
-            // A channel without a delay has no such value.
-            if setup.channels[channel].longest_delay.is_some() {
-                pairs.push(same(Unknown::SensorDelay(channel)));
+        let mut carry = |old: Unknown, new: Unknown| {
+            if let (Ok(old), Ok(new)) = (from.layout.place(old), to.layout().place(new)) {
+                values[new] = from.fit.values[old];
             }
+        };
+        for is in 0..info.parameter_len() {
+            if let Some(was) = before(is) {
+                carry(Unknown::Parameter(was), Unknown::Parameter(is));
+            }
+        }
+        let forces = (0..setup.disturbances.len()).map(Unknown::Disturbance);
+        let of_channels = (0..setup.channels.len()).flat_map(|channel| {
+            // A channel without a delay has no such value.
+            let delay = setup.channels[channel].longest_delay;
+            let delay = delay.map(|_| Unknown::SensorDelay(channel));
+            let others = [Unknown::Noise, Unknown::Bias, Unknown::Scale].map(|own| own(channel));
+            others.into_iter().chain(delay)
+        });
+        for same in forces.chain(of_channels) {
+            carry(same, same);
         }
         let inputs = |list: &[usize], input: &usize| list.iter().position(|own| own == input);
         for (new, input) in setup.lagging.iter().enumerate() {
-            let old = inputs(&was.lagging, input);
-            pairs.extend(old.map(|old| (Unknown::Lag(old), Unknown::Lag(new))));
+            if let Some(old) = inputs(&was.lagging, input) {
+                carry(Unknown::Lag(old), Unknown::Lag(new));
+            }
         }
         for (new, input) in setup.delayed.iter().enumerate() {
-            let old = inputs(&was.delayed, input);
-            pairs.extend(old.map(|old| (Unknown::InputDelay(old), Unknown::InputDelay(new))));
+            if let Some(old) = inputs(&was.delayed, input) {
+                carry(Unknown::InputDelay(old), Unknown::InputDelay(new));
+            }
         }
         for channel in 0..setup.channels.len() {
             let lag = |setup: &Setup<'_>| setup.lag_of_channel(channel).map(Unknown::Lag);
-            pairs.extend(lag(&was).zip(lag(setup)));
+            if let Some((old, new)) = lag(&was).zip(lag(setup)) {
+                carry(old, new);
+            }
         }
         // The initial states of other recordings have the distribution of those that were fitted. Coordinates come
         // after the pseudo-velocities, of which there may be one more.
@@ -115,17 +123,10 @@ impl Bench<'_> {
                 let Some(before) = moved(state, speeds) else {
                     continue;
                 };
-                let (initial, spread) = (
-                    |run, state| Unknown::Initial { run, state },
-                    |run, state| Unknown::Spread { run, state },
-                );
-                pairs.push((initial(old, before), initial(run, state)));
-                pairs.push((spread(old, before), spread(run, state)));
-            }
-        }
-        for (old, new) in pairs {
-            if let (Ok(old), Ok(new)) = (from.layout.place(old), to.layout().place(new)) {
-                values[new] = from.fit.values[old];
+                let initial = |run, state| Unknown::Initial { run, state };
+                let spread = |run, state| Unknown::Spread { run, state };
+                carry(initial(old, before), initial(run, state));
+                carry(spread(old, before), spread(run, state));
             }
         }
         begin_lags(to, &mut values);

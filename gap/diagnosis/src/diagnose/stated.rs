@@ -1,6 +1,6 @@
-//! Gains of actuators and scales of encoders with a tolerance (`gain_std`, `scale_std` of a channel): relative errors that
-//! become parameters of the spec. Like those they are fitted within their tolerances in every hypothesis, and a larger error
-//! is a hypothesis, which keeps the name of its effect.
+//! Gains of actuators and scales of encoders with a tolerance (`gain_std`, `scale_std` of a channel): relative errors
+//! that become parameters of the spec. Like those they are fitted within their tolerances in every hypothesis, and a
+//! larger error is a hypothesis, which keeps the name of its effect.
 
 use appell_recordings::{Channel, DataSet, Role, Spec};
 use appell_spec::edit::set_deviations;

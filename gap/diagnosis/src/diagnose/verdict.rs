@@ -22,8 +22,8 @@ pub enum GapVerdict {
 const MOST: f64 = 0.5;
 /// Mean square error relative to that of the noise up to which predictions are as good as they can be.
 const NEAR: f64 = 2.0;
-/// Log Bayes factor of a law one step ahead beyond which it is a gap although predictions over a second do not show it: odds
-/// of some hundred.
+/// Log Bayes factor of a law one step ahead beyond which it is a gap although predictions over a second do not show it:
+/// odds of some hundred.
 const DECISIVE: f64 = 2.0 * TIED;
 /// Part of its probability that `unknown` keeps where its law closes nothing.
 const DOUBT: f64 = 0.05;
@@ -77,8 +77,8 @@ impl GapVerdict {
 }
 
 impl Report {
-    /// Whether `unknown` leads after predictions of the held-out runs although no gap was found: a law of no effect of the
-    /// library may be too small for windows and yet predict materially better. `place` is where it acts.
+    /// Whether `unknown` leads after predictions of the held-out runs although no gap was found: a law of no effect of
+    /// the library may be too small for windows and yet predict materially better. `place` is where it acts.
     pub(super) fn recall_law(&mut self, far: &HowFar, place: &Where) -> bool {
         let predicts = |part: &Share| part.is_law() && part.interval[0] > IMMATERIAL;
         let is_gap = far.budget.iter().any(predicts) && far.kept_of_law() >= 1.0;
@@ -98,9 +98,9 @@ impl Report {
         true
     }
 
-    /// Whether the evidence for a law is decisive, one step ahead and on runs to which it was not fitted: predictions over a
-    /// second may not resolve it. Over windows there is no process noise that gusts could be, and what servos hide is
-    /// immaterial.
+    /// Whether the evidence for a law is decisive, one step ahead and on runs to which it was not fitted: predictions
+    /// over a second may not resolve it. Over windows there is no process noise that gusts could be, and what servos
+    /// hide is immaterial.
     fn is_law_decisive(&self, bench: &Bench<'_>) -> bool {
         let is_decisive = |left: &Left| left.log_bayes_factor > DECISIVE;
         let is_one_step = !bench.is_over_windows() && !bench.is_of_robot;

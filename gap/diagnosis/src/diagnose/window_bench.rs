@@ -172,7 +172,9 @@ impl Bench<'_> {
         let places: Vec<usize> = places.collect::<Result<_, _>>()?;
         let larger = LARGER.map(|factor| {
             let mut larger = values.to_vec();
-            places.iter().for_each(|&place| larger[place] *= factor);
+            for &place in &places {
+                larger[place] *= factor;
+            }
             larger
         });
         if let Some(larger) = likeliest(estimation, larger) {

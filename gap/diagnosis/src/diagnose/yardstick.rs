@@ -68,8 +68,8 @@ pub struct Yardstick {
     pub ratio: f64,
     /// The quantity.
     pub of: String,
-    /// Whether it is implausible: an added inertia ten times the stated one, a parameter that is wrong by a factor of two.
-    /// Forces have no such limit: a mechanism that coasts has friction and hardly any applied force.
+    /// Whether it is implausible: an added inertia ten times the stated one, a parameter that is wrong by a factor of
+    /// two. Forces have no such limit: a mechanism that coasts has friction and hardly any applied force.
     #[serde(rename = "large")]
     pub is_large: bool,
 }

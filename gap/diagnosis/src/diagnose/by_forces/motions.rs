@@ -32,8 +32,8 @@ pub(super) struct Variable {
     pub(super) shapes: Option<Shaped>,
 }
 
-/// Forces are bilinear in a size s and a shape z, as in the mass of a payload and its place: s f(z) = s f(z₀) + s (z − z₀) f′.
-/// The variable of a shape is the product s (z − z₀).
+/// Forces are bilinear in a size s and a shape z, as in the mass of a payload and its place: s f(z) = s f(z₀) + s (z −
+/// z₀) f′. The variable of a shape is the product s (z − z₀).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shaped {
     /// Index of the size.

@@ -1,17 +1,16 @@
-//! The report of a diagnosis by forces: missing forces over time and over their variables, and forces of inputs with those
-//! predicted by inverse dynamics.
+//! The report of a diagnosis by forces: missing forces over time and over their variables, and forces of inputs with
+//! those predicted by inverse dynamics.
 
 use nalgebra::DVector;
 
 use super::super::assembly::{detectable, found, shortened, tied};
 use super::super::budget::{self, Ends};
-use super::super::calibration::IMMATERIAL;
+use super::super::calibration::{IMMATERIAL, names};
 use super::super::changes::Equations;
 use super::super::force_history::OfRun;
 use super::super::force_law::{Step, over_its_variable, over_rates_and_positions};
 use super::super::localise::{Added, force_unit};
 use super::super::prediction::Errors;
-use super::super::prior::names;
 use super::super::{
     Changes, ErrorOf, ForceHistory, GapVerdict, HowFar, Hypothesis as Told, Options, Pictures,
     Report, Result, Trace, Value, Where, Yardstick, whole,

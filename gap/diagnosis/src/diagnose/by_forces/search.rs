@@ -8,8 +8,9 @@ use appell_recordings::DataSet;
 use nalgebra::DVector;
 
 use super::super::bench::wrong;
-use super::super::calibration::{inexact, tempered, unlisted, unlisted_beside_nothing};
-use super::super::prior::{names, prior};
+use super::super::calibration::{
+    inexact, names, prior, tempered, unlisted, unlisted_beside_nothing,
+};
 use super::hypothesis::{Hypothesis, Member, Open, Solved, Squares};
 use super::motions::Motions;
 use crate::effects::{Acts, EffectModel, Part};

@@ -9,7 +9,7 @@ use appell_gap::diagnose::{ENGINE, Options, diagnose};
 
 /// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
 const NUMBERS: &str = "\
-engine 29
+engine 30
 viscous_friction@theta+spring@theta 15.2
 spring@theta 9.6
 unknown NaN

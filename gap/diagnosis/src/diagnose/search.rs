@@ -333,8 +333,13 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// Keeps the better of two fits of a hypothesis. A search that ended before an optimum gives a lower bound of its
-    /// evidence.
-    pub(super) fn keep(&mut self, fitted: Fitted) {
+    /// evidence. What a command knows is no evidence for an effect: impulses gain at most as much as in addition to the
+    /// nominal model.
+    pub(super) fn keep(&mut self, mut fitted: Fitted) {
+        if !fitted.members.is_empty() {
+            let evidence = &mut fitted.evidence;
+            evidence.by_inputs = (evidence.by_inputs).min(self.fits[0].evidence.by_inputs);
+        }
         let mut fits = self.fits.iter_mut();
         match fits.find(|own| own.members == fitted.members) {
             Some(own) if own.evidence.log() < fitted.evidence.log() => *own = fitted,

@@ -5,7 +5,7 @@
 //! the samples of common channels, each conditional on all earlier samples. A filter with the common channels alone
 //! would diverge for an unstable mechanism.
 
-use appell_estimate::{Estimation, Innovation};
+use appell_estimate::Innovation;
 
 use super::{Bench, Changes, DiagnoseError, Fitted, Result, Value};
 use crate::effects::EffectModel;
@@ -132,9 +132,7 @@ fn measured(set: &DataSet, model: &EffectModel) -> Vec<String> {
 
 /// Log-likelihood of the samples of some channels, each given all samples before it.
 fn of_channels(bench: &Bench<'_>, fitted: &Fitted, channels: &[bool]) -> Result<f64> {
-    let setup = bench.setup(&fitted.members);
-    let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let runs = estimation.innovations(&fitted.fit.values)?;
+    let runs = bench.innovations(fitted)?;
     let samples = runs.iter().flatten();
     let own = samples.filter(|sample| channels[sample.channel]);
     Ok(bench.weight * own.map(Innovation::log_likelihood).sum::<f64>())

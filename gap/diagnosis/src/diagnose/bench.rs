@@ -2,8 +2,8 @@
 //! parameters of each hypothesis, and the initial values of a search.
 
 use appell_estimate::{
-    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Layout, Measured, Recording, Setup,
-    Unknown,
+    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Innovation, Layout, Measured,
+    Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
 
@@ -239,6 +239,13 @@ impl<'a> Bench<'a> {
             admit(&mut setup, acts, self.step);
         }
         setup
+    }
+
+    /// The innovations of a hypothesis.
+    pub(super) fn innovations(&self, fitted: &Fitted) -> Result<Vec<Vec<Innovation>>> {
+        let setup = self.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        Ok(estimation.innovations(&fitted.fit.values)?)
     }
 
     /// Difference in log likelihood between a hypothesis with delayed channels and another one, on the rows that the

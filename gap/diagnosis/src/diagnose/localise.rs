@@ -178,9 +178,7 @@ pub(super) fn tell(bench: &Bench<'_>, comparison: &Comparison, place: &mut Where
 fn gains(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Result<Vec<Sample>> {
     let mut rows: BTreeMap<(usize, usize), (f64, [f64; 2])> = BTreeMap::new();
     for (place, fitted) in [nominal, best].into_iter().enumerate() {
-        let setup = bench.setup(&fitted.members);
-        let estimation = Estimation::new(&setup, &bench.recordings)?;
-        let runs = estimation.innovations(&fitted.fit.values)?;
+        let runs = bench.innovations(fitted)?;
         let samples = runs.iter().enumerate();
         for (run, sample) in samples.flat_map(|(run, all)| all.iter().map(move |one| (run, one))) {
             let row = rows

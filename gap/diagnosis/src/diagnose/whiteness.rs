@@ -4,7 +4,7 @@
 //! them count as n / (1 + 2 Σ ρₖ) independent ones (G. E. P. Box, G. M. Jenkins and G. C. Reinsel,
 //! *Time Series Analysis*, 4th edition, 2008, section 2.1).
 
-use appell_estimate::{Estimation, Innovation};
+use appell_estimate::Innovation;
 
 use super::{Bench, Fitted, Result};
 
@@ -15,9 +15,7 @@ const NONE: f64 = 3.0;
 
 /// Effective sample size relative to the number of samples, from 0 to 1.
 pub(super) fn independent(bench: &Bench<'_>, fitted: &Fitted) -> Result<f64> {
-    let setup = bench.setup(&fitted.members);
-    let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let runs = estimation.innovations(&fitted.fit.values)?;
+    let runs = bench.innovations(fitted)?;
     let (mut counted, mut all) = (0.0, 0.0);
     for channel in 0..bench.measured.len() {
         let own = |run: &Vec<Innovation>| -> Vec<f64> {

@@ -203,15 +203,13 @@ impl Squares {
                 let [low, high] = open[i].range;
                 !(low < solved.values[i] && solved.values[i] < high)
             };
-            let against = (0..open.len()).find(is_against);
-            if let Some(against) = against {
-                let gone = open.remove(against).column;
-                if members.iter().any(|one| one.is_whole && one.has(gone)) {
-                    return None;
-                }
-                continue;
+            let Some(against) = (0..open.len()).find(is_against) else {
+                return self.evaluated(members, &open, solved);
+            };
+            let gone = open.remove(against).column;
+            if members.iter().any(|one| one.is_whole && one.has(gone)) {
+                return None;
             }
-            return self.evaluated(members, &open, solved);
         }
     }
 

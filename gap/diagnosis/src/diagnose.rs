@@ -15,7 +15,7 @@
 //!          --horizon--> validation by simulations over windows; if it fails, these rank the hypotheses
 //!          --outside--> windows that no hypothesis predicts are cut, and the steps above repeated
 //!          --coloured--> one-step predictions with process noise that has memory
-//!          --compare--> members that close nothing on held-out runs are no members
+//!          --materiality--> members that close nothing on held-out runs are no members
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> nonparametric laws for the residual of the best hypothesis
 //!          --localise, outside--> equations, windows of time, regions, events that no hypothesis predicts
@@ -62,6 +62,7 @@ mod horizon;
 mod instead;
 mod law;
 mod localise;
+mod materiality;
 mod nominal;
 mod outside;
 mod prediction;
@@ -72,6 +73,7 @@ mod scan;
 mod screen;
 mod search;
 mod sets;
+mod start_levels;
 mod starts;
 mod stated;
 mod unknown;
@@ -82,7 +84,7 @@ mod window_bench;
 mod yardstick;
 
 use crate::effects::{Effect, EffectModel, candidates};
-use appell_recordings::{DataSet, Part, Spec};
+use appell_recordings::{DataSet, Part};
 
 pub use crate::held_out::AHEAD;
 pub use against::against;
@@ -92,8 +94,8 @@ pub use error::{ChangeError, DiagnoseError};
 pub use report::{
     Advice, Ahead, Before, Change, Detectable, ErrorOf, Experiment, ForceHistory, ForceLaw, Form,
     Found, GapVerdict, Hint, HowFar, Hypothesis, Interpolated, Law, Left, Limit, MissingForce,
-    Open, Pictures, QUANTILE, Region, Report, Share, ShareOf, Tolerances, Trace, Value, Where,
-    Window, Yardstick,
+    Open, Options, Pictures, QUANTILE, Region, Report, Share, ShareOf, Tolerances, Trace, Value,
+    Where, Window, Yardstick,
 };
 
 use alternative::{Alternative, Rival};
@@ -102,6 +104,7 @@ use compare::Comparison;
 use evidence::Fitted;
 use held_out::{HeldOut, Leader};
 use horizon::Judged;
+use scales::whole;
 use screen::screen;
 use stated::Stated;
 
@@ -114,23 +117,6 @@ const MOST_ROWS: usize = 4000;
 const MOST_VALUES: usize = 20_000;
 /// The same for robots, which are judged over windows.
 const ROBOT_VALUES: usize = 4_000;
-
-/// Options of a diagnosis.
-#[derive(Debug, Clone, Default)]
-pub struct Options {
-    /// Whether to include the data of the plots: traces, and the missing force over its variable.
-    pub pictures: bool,
-    /// Limits of the next experiment; by default it stays near the recorded ranges.
-    pub limits: Vec<Limit>,
-    /// Other specs of the same rig, each a hypothesis of its own.
-    pub alternatives: Vec<Spec>,
-    /// Horizon in s at which the gap is reported; by default 1 s, limited by the length of the runs.
-    pub horizon: Option<f64>,
-    /// Share of the gap of the re-fitted model below which an effect is not reported as a cause; by default 0.02.
-    pub tolerance: Option<f64>,
-    /// Names of effects that the spec contains already, which are no hypotheses.
-    pub present: Vec<String>,
-}
 
 /// Diagnoses a data set with a library of effects. `stage` is called with the name of each stage.
 pub fn diagnose(
@@ -406,10 +392,4 @@ fn judged<'m>(
         return Ok(judged);
     }
     judged.with_coloured_noise()
-}
-
-/// A count or an index in memory: a number that is small and not negative, rounded down.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-const fn whole(number: f64) -> usize {
-    number as usize
 }

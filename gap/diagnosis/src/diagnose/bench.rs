@@ -10,7 +10,7 @@ use appell_runtime::model::Model;
 use super::evidence::Evidence;
 use super::feedback::{InputInnovations, for_kicks};
 use super::hardware::Hardware;
-use super::starts::{level, sizes};
+use super::start_levels::{level, sizes};
 use super::unmodelled::UnmodelledChannel;
 use super::{DiagnoseError, Fitted, Result};
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};

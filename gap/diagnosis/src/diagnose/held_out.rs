@@ -9,9 +9,10 @@ use super::alternative::columns;
 use super::budget::{self, Ends};
 use super::calibration::IMMATERIAL;
 use super::law::FittedLaw;
-use super::prediction::{EXPECTED_FROM, Errors, Paired, noise, stated, taken_over};
+use super::prediction::{Errors, Paired, noise, stated, taken_over};
 use super::{
-    Ahead, Bench, Comparison, DiagnoseError, ErrorOf, Fitted, HowFar, Options, Result, Share, Trace,
+    Ahead, Bench, Comparison, DiagnoseError, ErrorOf, Fitted, HowFar, Options, Result, Share,
+    Trace, whole,
 };
 use crate::held_out::{AHEAD, HORIZONS, origins};
 use appell_recordings::{DataSet, Part};
@@ -24,6 +25,14 @@ const PART: f64 = 0.5;
 /// variation of the channels.
 const SHORTER: f64 = 0.1;
 
+/// Largest number of rows of a run from which predictions start.
+const ORIGINS: usize = 75;
+/// Number of rows from which expected errors are computed.
+const EXPECTED_FROM: usize = 25;
+/// Length of a block relative to the horizon, over which errors are correlated.
+const BLOCK: f64 = 1.0;
+/// The same in s for predictions of one step and of whole runs.
+const BLOCK_S: f64 = 2.0;
 /// Largest number of points of a trace.
 const POINTS: usize = 1000;
 
@@ -143,6 +152,75 @@ impl HeldOut {
             channels,
             ..HowFar::of(all, horizon, floor, budget, runs)
         }))
+    }
+}
+
+impl HeldOut {
+    /// Errors of a fitted hypothesis, in units of the `noise` of each channel; where that is infinite they do not count.
+    pub(super) fn errors(
+        &self,
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+        noise: &[f64],
+        horizon: f64,
+    ) -> Result<Errors> {
+        let setup = bench.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let values = taken_over(bench, fitted, &estimation)?;
+        let mut errors = Errors::default();
+        let length = if horizon > 0.0 && horizon.is_finite() {
+            BLOCK * horizon
+        } else {
+            BLOCK_S
+        };
+        for (run, recording) in self.recordings.iter().enumerate() {
+            let mut origins = origins(recording, ORIGINS);
+            if horizon.is_infinite() {
+                origins.truncate(1);
+            }
+            for one in estimation.predictions(&values, run, horizon, &origins)? {
+                if noise[one.channel].is_infinite() {
+                    continue;
+                }
+                let block = (recording.times()[one.origin] - recording.times()[0]) / length;
+                let square = (one.residual / noise[one.channel]).powi(2);
+                errors.add([run, whole(block)], one.channel, square);
+            }
+        }
+        Ok(errors)
+    }
+
+    /// The expected error of a true hypothesis, root of the mean square.
+    pub(super) fn floor(
+        &self,
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+        noise: &[f64],
+        horizon: f64,
+    ) -> Result<f64> {
+        if let Some(sensors) = bench.noise_of_sensors() {
+            let parts = sensors.iter().zip(noise);
+            let parts = parts.filter(|(_, unit)| unit.is_finite());
+            let squares = parts.map(|(sensor, unit)| (sensor / unit).powi(2));
+            let squares: Vec<f64> = squares.collect();
+            return Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt());
+        }
+        let setup = bench.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let values = taken_over(bench, fitted, &estimation)?;
+        let (mut squares, mut count) = (0.0, 0.0_f64);
+        for (run, recording) in self.recordings.iter().enumerate() {
+            let origins = origins(recording, EXPECTED_FROM);
+            for (_, channel, variance) in
+                estimation.expected_errors(&values, run, horizon, &origins)?
+            {
+                if noise[channel].is_finite() {
+                    squares += variance / noise[channel].powi(2);
+                    count += 1.0;
+                }
+            }
+        }
+        Ok((squares / count.max(1.0)).sqrt())
     }
 }
 

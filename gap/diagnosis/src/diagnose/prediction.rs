@@ -12,21 +12,12 @@ use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use super::starts::scale_process_noise;
-use super::{Bench, Fitted, HeldOut, Result, whole};
-use crate::held_out::origins;
+use super::{Bench, Fitted, Result};
 
-/// Largest number of rows of a run from which predictions start.
-const ORIGINS: usize = 75;
-/// Number of rows from which expected errors are computed.
-pub(super) const EXPECTED_FROM: usize = 25;
 /// Largest number of tenfold increases of the process noise.
 const MORE: usize = 6;
 /// Number of bootstrap samples.
 const DRAWS: usize = 1000;
-/// Length of a block relative to the horizon, over which errors are correlated.
-const BLOCK: f64 = 1.0;
-/// The same in s for predictions of one step and of whole runs.
-const BLOCK_S: f64 = 2.0;
 
 /// Sums of squared errors with their counts.
 #[derive(Debug, Clone, Default)]
@@ -122,75 +113,6 @@ impl Paired {
             one.copied().unwrap_or(f64::NAN)
         };
         [at(25), at(975)]
-    }
-}
-
-impl HeldOut {
-    /// Errors of a fitted hypothesis, in units of the `noise` of each channel; where that is infinite they do not count.
-    pub(super) fn errors(
-        &self,
-        bench: &Bench<'_>,
-        fitted: &Fitted,
-        noise: &[f64],
-        horizon: f64,
-    ) -> Result<Errors> {
-        let setup = bench.setup(&fitted.members);
-        let estimation = Estimation::new(&setup, &self.recordings)?;
-        let values = taken_over(bench, fitted, &estimation)?;
-        let mut errors = Errors::default();
-        let length = if horizon > 0.0 && horizon.is_finite() {
-            BLOCK * horizon
-        } else {
-            BLOCK_S
-        };
-        for (run, recording) in self.recordings.iter().enumerate() {
-            let mut origins = origins(recording, ORIGINS);
-            if horizon.is_infinite() {
-                origins.truncate(1);
-            }
-            for one in estimation.predictions(&values, run, horizon, &origins)? {
-                if noise[one.channel].is_infinite() {
-                    continue;
-                }
-                let block = (recording.times()[one.origin] - recording.times()[0]) / length;
-                let square = (one.residual / noise[one.channel]).powi(2);
-                errors.add([run, whole(block)], one.channel, square);
-            }
-        }
-        Ok(errors)
-    }
-
-    /// The expected error of a true hypothesis, root of the mean square.
-    pub(super) fn floor(
-        &self,
-        bench: &Bench<'_>,
-        fitted: &Fitted,
-        noise: &[f64],
-        horizon: f64,
-    ) -> Result<f64> {
-        if let Some(sensors) = bench.noise_of_sensors() {
-            let parts = sensors.iter().zip(noise);
-            let parts = parts.filter(|(_, unit)| unit.is_finite());
-            let squares = parts.map(|(sensor, unit)| (sensor / unit).powi(2));
-            let squares: Vec<f64> = squares.collect();
-            return Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt());
-        }
-        let setup = bench.setup(&fitted.members);
-        let estimation = Estimation::new(&setup, &self.recordings)?;
-        let values = taken_over(bench, fitted, &estimation)?;
-        let (mut squares, mut count) = (0.0, 0.0_f64);
-        for (run, recording) in self.recordings.iter().enumerate() {
-            let origins = origins(recording, EXPECTED_FROM);
-            for (_, channel, variance) in
-                estimation.expected_errors(&values, run, horizon, &origins)?
-            {
-                if noise[channel].is_finite() {
-                    squares += variance / noise[channel].powi(2);
-                    count += 1.0;
-                }
-            }
-        }
-        Ok((squares / count.max(1.0)).sqrt())
     }
 }
 

@@ -1,6 +1,6 @@
 //! The gap report, with the names of its format.
 
-use appell_recordings::DataSet;
+use appell_recordings::{DataSet, Spec};
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -359,6 +359,23 @@ pub struct Before {
 
 /// A limit stated by the user, in SI: a column with its smallest and largest value.
 pub type Limit = (String, [f64; 2]);
+
+/// Options of a diagnosis.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Whether to include the data of the plots: traces, and the missing force over its variable.
+    pub pictures: bool,
+    /// Limits of the next experiment; by default it stays near the recorded ranges.
+    pub limits: Vec<Limit>,
+    /// Other specs of the same rig, each a hypothesis of its own.
+    pub alternatives: Vec<Spec>,
+    /// Horizon in s at which the gap is reported; by default 1 s, limited by the length of the runs.
+    pub horizon: Option<f64>,
+    /// Share of the gap of the re-fitted model below which an effect is not reported as a cause; by default 0.02.
+    pub tolerance: Option<f64>,
+    /// Names of effects that the spec contains already, which are no hypotheses.
+    pub present: Vec<String>,
+}
 
 /// An input that separates two hypotheses.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,6 @@ use appell_recordings::{DataSet, Measured, Role, Run};
 use appell_spec::expr::{Expr, ExprKind, Quantity, Response};
 use appell_spec::mechanism::Output;
 
-use super::whole;
 use crate::effects::{Scales, controlled};
 use crate::slope::{Slope, WINDOW};
 
@@ -208,4 +207,10 @@ fn known(set: &DataSet, run: &Run, first: usize, quantity: Quantity) -> f64 {
         _ => None,
     };
     found.unwrap_or(f64::NAN)
+}
+
+/// A count or an index in memory: a number that is small and not negative, rounded down.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+pub(super) const fn whole(number: f64) -> usize {
+    number as usize
 }

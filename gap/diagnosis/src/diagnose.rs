@@ -18,13 +18,13 @@
 //!          --materiality--> members that close nothing on held-out runs are no members
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> nonparametric laws for the residual of the best hypothesis
-//!          --localise, windows, outside--> equations, windows of time, regions, events that no hypothesis predicts
+//!          --localise, outside--> equations, windows of time, regions, events that no hypothesis predicts
 //!          --assumptions--> stated tolerances and interpolation of inputs
 //!          --assembly--> hypotheses with their values and ties, as in the report
 //!          --law--> the residual, measured as a force law
 //!          --held_out, prediction--> prediction errors: nominal, re-fitted, with the effect, noise
 //!          --budget--> the share of each effect in the gap, and the remainder
-//!          --force_history, traces, force_law--> data of the plots
+//!          --force_history, held_out, force_law--> data of the plots
 //!          --experiment--> an input that discriminates between tied hypotheses
 //!          --changes--> the changes of the spec under each hypothesis
 //!          --yardstick, advice--> sizes relative to known quantities; which changes are certain
@@ -47,7 +47,6 @@ mod by_forces;
 mod calibration;
 mod changes;
 mod coloured;
-mod common;
 mod compare;
 mod error;
 mod evidence;
@@ -55,24 +54,18 @@ mod experiment;
 mod feedback;
 mod force_history;
 mod force_law;
-mod forces;
 mod forms;
 mod gram;
 mod hardware;
 mod held_out;
 mod horizon;
-mod initial;
 mod instead;
 mod law;
 mod localise;
 mod materiality;
 mod nominal;
-mod nuisance;
-mod options;
 mod outside;
-mod pictures;
 mod prediction;
-mod prior;
 mod reading;
 mod report;
 mod scales;
@@ -83,15 +76,11 @@ mod sets;
 mod start_levels;
 mod starts;
 mod stated;
-mod traces;
-mod twins;
 mod unknown;
 mod unmodelled;
-mod value;
 mod verdict;
 mod whiteness;
 mod window_bench;
-mod windows;
 mod yardstick;
 
 use crate::effects::{Effect, EffectModel, candidates};
@@ -100,21 +89,23 @@ use appell_recordings::{DataSet, Part};
 pub use crate::held_out::AHEAD;
 pub use against::against;
 pub use changes::{Changes, Refitted, SignalEffect};
+use error::Result;
 pub use error::{ChangeError, DiagnoseError};
-pub use options::Options;
 pub use report::{
     Advice, Ahead, Before, Change, Detectable, ErrorOf, Experiment, ForceHistory, ForceLaw, Form,
     Found, GapVerdict, Hint, HowFar, Hypothesis, Interpolated, Law, Left, Limit, MissingForce,
-    Open, Pictures, QUANTILE, Region, Report, Share, ShareOf, Tolerances, Trace, Value, Where,
-    Window, Yardstick,
+    Open, Options, Pictures, QUANTILE, Region, Report, Share, ShareOf, Tolerances, Trace, Value,
+    Where, Window, Yardstick,
 };
 
 use alternative::{Alternative, Rival};
 use bench::Bench;
 use compare::Comparison;
+use evidence::Fitted;
 use held_out::{HeldOut, Leader};
 use horizon::Judged;
-use screen::Screen;
+use scales::whole;
+use screen::screen;
 use stated::Stated;
 
 /// Version of the engine. Every change that affects a number of some report increments it, so that scores and
@@ -144,7 +135,7 @@ fn diagnosed(
     effects: &[Effect],
     options: &Options,
     mut stage: &mut dyn FnMut(&'static str),
-) -> Result<Report, DiagnoseError> {
+) -> Result<Report> {
     stage("deriving the mechanism with all effects");
     let whole = set.only(Part::Fit);
     let fitted = whole.stretches(most_rows(set, options));
@@ -185,38 +176,24 @@ fn diagnosed(
         reading,
         ..own.clone()
     });
-    let training = Training {
-        whole: &whole,
-        segments: &fitted,
-    };
-    by_filter(&set, before, training, &model, options, stage)
+    by_filter(&set, before, [&whole, &fitted], &model, options, stage)
 }
 
-/// The training runs.
-#[derive(Clone, Copy)]
-struct Training<'d> {
-    /// The whole runs.
-    whole: &'d DataSet,
-    /// Segments of them that are fitted, with a limited number of rows.
-    segments: &'d DataSet,
-}
-
-/// The diagnosis by the innovations of a filter and by simulations.
+/// The diagnosis by the innovations of a filter and by simulations. The training runs are whole runs, and segments of
+/// them that are fitted, with a limited number of rows.
 fn by_filter(
     set: &DataSet,
     before: Option<&DataSet>,
-    training: Training<'_>,
+    [whole, segments]: [&DataSet; 2],
     model: &EffectModel,
     options: &Options,
     mut stage: impl FnMut(&'static str),
-) -> Result<Report, DiagnoseError> {
-    let whole = training.whole;
-    let first = judged(training, model, options, &mut stage)?;
+) -> Result<Report> {
+    let first = judged([whole, segments], model, options, &mut stage)?;
     let training_runs = HeldOut::of(&whole.all(Part::Test), &first.bench)?;
     let (judged, rest) = without_events(first, whole, model, options, &mut stage)?;
     let is_whole = rest.is_none();
-    let (fitted, rest) =
-        (rest.as_ref()).map_or((training.segments, whole), |(fitted, rest)| (fitted, rest));
+    let (fitted, rest) = (rest.as_ref()).map_or((segments, whole), |(fitted, rest)| (fitted, rest));
     let Judged {
         bench,
         screen,
@@ -233,18 +210,19 @@ fn by_filter(
         Ok(laws) => (laws, None),
         Err(reason) => (Vec::new(), Some(Err(reason))),
     };
-    let fitted_laws = law::fitted(&laws, &bench, &test);
-    let measured = law::measured(fitted_laws, &mut comparison, &bench, rest).or(unwritten);
+    let measured = law::measured(&laws, &mut comparison, &bench, rest, &test).or(unwritten);
     stage("fitting the alternatives");
-    let alternatives = Alternative::all(&options.alternatives, fitted)?;
+    let alternatives = options.alternatives.iter();
+    let alternatives = alternatives.map(|spec| Alternative::new(fitted, spec));
+    let alternatives = alternatives.collect::<Result<Vec<_>, _>>()?;
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;
     stage("localising the gap");
     let mut place = localise::place(&bench, &comparison)?;
-    windows::tell(&bench, &comparison, &mut place)?;
+    localise::tell(&bench, &comparison, &mut place)?;
     let mut report = assembly::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
     report.failed.append(&mut lost);
     report.rows = [fitted.rows(), whole.rows()];
-    report.hints = assembly::hints(&bench, &comparison)?;
+    report.hints = unknown::hints(&bench, comparison.nominal())?;
     report.tolerances = assumptions::tolerances(comparison.best());
     // Without a result if the filter diverges with the other interpolation.
     report.interpolated =
@@ -257,7 +235,10 @@ fn by_filter(
         .iter()
         .find(|rival| report.which[0].effects == [rival.name.clone()]);
     let rebound = match leading {
-        Some(rival) => Some((rival, HeldOut::of(&rival.rebound(&test)?, &rival.bench)?)),
+        Some(rival) => Some((
+            rival,
+            HeldOut::of(&test.rebound(&rival.bench.set.spec)?, &rival.bench)?,
+        )),
         None => None,
     };
     let known = outside.filter(|_| is_whole);
@@ -308,8 +289,8 @@ fn by_filter(
     })
 }
 
-/// The leader of a report, where the `best` hypothesis of the library is known: an alternative, with its held-out runs, or
-/// the law of a cause outside the library.
+/// The leader of a report, where the `best` hypothesis of the library is known: an alternative, with its held-out runs,
+/// or the law of a cause outside the library.
 fn leader_of<'l>(
     report: &Report,
     best: Leader<'l>,
@@ -342,17 +323,13 @@ fn without_events<'m>(
     model: &'m EffectModel,
     options: &Options,
     stage: &mut impl FnMut(&'static str),
-) -> Result<(Judged<'m>, Option<(DataSet, DataSet)>), DiagnoseError> {
+) -> Result<(Judged<'m>, Option<(DataSet, DataSet)>)> {
     let Some(rest) = outside::rest(&mut first, whole)? else {
         return Ok((first, None));
     };
     let fitted = rest.stretches(most_rows(&rest, options));
     stage("fitting without the windows that no hypothesis predicts");
-    let training = Training {
-        whole: &rest,
-        segments: &fitted,
-    };
-    Ok(match judged(training, model, options, stage) {
+    Ok(match judged([&rest, &fitted], model, options, stage) {
         Ok(again) => (again.without_events(), Some((fitted, rest))),
         Err(_) => (first, None),
     })
@@ -376,7 +353,7 @@ fn pictures(
     comparison: &Comparison,
     leader: &Leader<'_>,
     place: &Where,
-) -> Result<Pictures, DiagnoseError> {
+) -> Result<Pictures> {
     let (force_law, joints) = match leader.alternative {
         Some(_) => (None, Vec::new()),
         None => force_law::force_laws(bench, comparison, place)?,
@@ -389,26 +366,26 @@ fn pictures(
     })
 }
 
-/// The hypotheses ranked on the training runs.
+/// The hypotheses ranked on the training runs, whole and in segments.
 fn judged<'m>(
-    training: Training<'_>,
+    [whole, segments]: [&DataSet; 2],
     model: &'m EffectModel,
     options: &Options,
     stage: &mut impl FnMut(&'static str),
-) -> Result<Judged<'m>, DiagnoseError> {
-    let whole = &training.whole.bound_to(&model.mechanism);
-    let mut bench = Bench::new(training.segments, model)?;
+) -> Result<Judged<'m>> {
+    let whole = &whole.bound_to(&model.mechanism);
+    let mut bench = Bench::new(segments, model)?;
     bench.whole.clone_from(&whole.runs);
     bench.is_of_robot = by_forces::is_of_robot(whole, options);
     stage("fitting the nominal model");
     let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
     stage("screening the effects");
-    let screen = Screen::of(&bench, &nominal)?;
+    let screened = screen(&bench, &nominal)?;
     stage("fitting the remaining effects");
     let windows = horizon::windows(whole, bench.is_of_robot)?;
     let levels = bench.levels(&nominal)?;
     let over = Bench::over(&windows, &bench, &levels)?;
-    let judged = horizon::judged(bench, screen, nominal, over, stage)?;
+    let judged = horizon::judged(bench, screened, nominal, over, stage)?;
     let mut judged = horizon::lengthened(judged, &levels, whole, stage)?;
     // An event is no process noise.
     if outside::rest(&mut judged, whole)?.is_some() {

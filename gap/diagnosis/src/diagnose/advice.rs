@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::calibration::TIED;
-use super::report::{Hypothesis, QUANTILE, Report, Share};
+use super::{Hypothesis, QUANTILE, Report, Share};
 
 /// Part of the gap that may stay where effects close it.
 const STAYS: f64 = 0.05;
@@ -93,8 +93,8 @@ impl Advice {
         advice
     }
 
-    /// The hypothesis, numbered from 1, that has all certain effects and no other, with sizes that agree with those of the
-    /// leading one.
+    /// The hypothesis, numbered from 1, that has all certain effects and no other, with sizes that agree with those of
+    /// the leading one.
     pub fn hypothesis(&self, report: &Report) -> Option<usize> {
         let first = report.leading()?;
         let is_certain = |one: &Hypothesis| {
@@ -109,10 +109,8 @@ impl Advice {
 
 /// Whether any size differs significantly from that without the effect. An effect without sizes has none to determine.
 fn is_determined(hypothesis: &Hypothesis, effect: &str) -> bool {
-    let mut sizes = hypothesis
-        .values_of(effect)
-        .filter(|value| value.without.is_some())
-        .peekable();
+    let sizes = hypothesis.values_of(effect);
+    let mut sizes = sizes.filter(|value| value.without.is_some()).peekable();
     sizes.peek().is_none() || sizes.any(|size| size.is_determined)
 }
 

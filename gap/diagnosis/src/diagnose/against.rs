@@ -17,11 +17,10 @@ use nalgebra::{DMatrix, DVector};
 use crate::effects::{Effect, EffectModel};
 use crate::identify::{self, Answer, Estimate, identify};
 
-use super::changes::Changes;
 use super::report::Told;
 use super::{
-    Before, Change, DiagnoseError, GapVerdict, Hypothesis, Options, Report, by_forces, diagnose,
-    diagnosed,
+    Before, Change, Changes, DiagnoseError, GapVerdict, Hypothesis, Options, Report, Result,
+    by_forces, diagnose, diagnosed,
 };
 
 /// Smallest part of the mean square prediction error that was not there on the earlier recordings.
@@ -109,7 +108,7 @@ pub fn against(
 
 impl Told {
     /// By a filter.
-    fn of(set: &DataSet) -> Result<Self, DiagnoseError> {
+    fn of(set: &DataSet) -> Result<Self> {
         let model = EffectModel::new(&set.spec, Vec::new())?;
         let rough = identify::Options {
             rough: true,
@@ -237,10 +236,7 @@ fn start(set: &mut DataSet, changes: &Changes) {
 fn undo(set: &mut DataSet, taken: &Hypothesis, changes: &Changes) {
     for effect in &changes.signal_effects {
         let mut values = taken.parameters.iter();
-        let own = values.find(|value| {
-            let own = value.name.rsplit_once('.');
-            own.is_some_and(|(name, _)| name == effect.effect)
-        });
+        let own = values.find(|value| value.effect() == effect.effect);
         let mut channels = set.channels.iter();
         let is_on = |channel: &Channel| {
             let label = channel.role.label(&set.mechanism);

@@ -5,26 +5,20 @@
 //! the samples of common channels, each conditional on all earlier samples. A filter with the common channels alone
 //! would diverge for an unstable mechanism.
 
-use appell_estimate::{Estimation, Innovation};
+use appell_estimate::Innovation;
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::changes::Changes;
-use super::evidence::Fitted;
-use super::report::Value;
+use super::{Bench, Changes, DiagnoseError, Fitted, Result, Value};
 use crate::effects::EffectModel;
 use appell_recordings::{DataSet, Spec};
 
 /// A spec with the training runs.
 pub(super) struct Alternative {
-    spec: Spec,
     set: DataSet,
     model: EffectModel,
 }
 
 /// An alternative after its fit.
 pub(super) struct Rival<'a> {
-    spec: &'a Spec,
     /// Name of the hypothesis.
     pub(super) name: String,
     pub(super) bench: Bench<'a>,
@@ -37,21 +31,16 @@ pub(super) struct Rival<'a> {
 type Lost = (Vec<String>, String);
 
 impl Alternative {
-    /// All alternatives, with the training runs.
-    pub(super) fn all(specs: &[Spec], fitted: &DataSet) -> Result<Vec<Self>, DiagnoseError> {
-        specs.iter().map(|spec| Self::new(fitted, spec)).collect()
-    }
-
-    fn new(fitted: &DataSet, spec: &Spec) -> Result<Self, DiagnoseError> {
+    /// Of a spec, with the training runs.
+    pub(super) fn new(fitted: &DataSet, spec: &Spec) -> Result<Self> {
         Ok(Self {
-            spec: spec.clone(),
             set: fitted.rebound(spec)?,
             model: EffectModel::new(spec, Vec::new())?,
         })
     }
 
     /// Name of its hypothesis.
-    pub(super) fn name(&self) -> String {
+    fn name(&self) -> String {
         format!("alternative:{}", self.set.mechanism.name)
     }
 }
@@ -61,7 +50,7 @@ impl<'a> Rival<'a> {
     pub(super) fn all(
         alternatives: &'a [Alternative],
         main: &Bench<'_>,
-    ) -> Result<(Vec<Self>, Vec<Lost>), DiagnoseError> {
+    ) -> Result<(Vec<Self>, Vec<Lost>)> {
         let (mut rivals, mut lost) = (Vec::new(), Vec::new());
         for alternative in alternatives {
             match Self::of(alternative, main) {
@@ -76,7 +65,7 @@ impl<'a> Rival<'a> {
     }
 
     /// Fits an alternative to the model of `main`.
-    fn of(alternative: &'a Alternative, main: &Bench<'_>) -> Result<Self, DiagnoseError> {
+    fn of(alternative: &'a Alternative, main: &Bench<'_>) -> Result<Self> {
         let name = alternative.set.mechanism.name.clone();
         let shared = columns(main);
         let own = measured(&alternative.set, &alternative.model);
@@ -89,25 +78,20 @@ impl<'a> Rival<'a> {
         let mut bench = Bench::new(&alternative.set, &alternative.model)?;
         let mut fitted = bench.nominal()?;
         if main.is_over_windows() {
-            let windows = main.set.rebound(&alternative.spec)?;
+            let windows = main.set.rebound(&alternative.set.spec)?;
             let levels = bench.levels(&fitted)?;
-            bench = Bench::over(&windows, &bench, &levels)?.with_weight_of(main);
+            bench = Bench::over(&windows, &bench, &levels)?;
+            (bench.weight, bench.told) = (main.weight, main.told);
             fitted = bench.nominal()?;
         }
         let extra: Vec<bool> = own.iter().map(|column| !shared.contains(column)).collect();
         let of_extra = of_channels(&bench, &fitted, &extra)?;
         Ok(Self {
-            spec: &alternative.spec,
             name: alternative.name(),
             log: fitted.evidence.log() - of_extra,
             bench,
             fitted,
         })
-    }
-
-    /// Held-out runs, bound to it.
-    pub(super) fn rebound(&self, test: &DataSet) -> Result<DataSet, DiagnoseError> {
-        Ok(test.rebound(self.spec)?)
     }
 
     /// Noise of its channels as in the main model; infinite for channels that only it has.
@@ -121,16 +105,15 @@ impl<'a> Rival<'a> {
     }
 
     /// Parameters after the fit.
-    pub(super) fn values(&self) -> Result<Vec<Value>, DiagnoseError> {
+    pub(super) fn values(&self) -> Result<Vec<Value>> {
         let parameters = Changes::of(&self.bench, &self.fitted)?.parameters;
         let values = parameters.into_iter().map(|one| Value {
             name: format!("{}.{}", self.name, one.name),
             value: one.value,
             std: one.std.unwrap_or(0.0),
             unit: one.unit,
-            without: None,
             is_determined: true,
-            yardstick: None,
+            ..Value::default()
         });
         Ok(values.collect())
     }
@@ -148,14 +131,8 @@ fn measured(set: &DataSet, model: &EffectModel) -> Vec<String> {
 }
 
 /// Log-likelihood of the samples of some channels, each given all samples before it.
-fn of_channels(
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    channels: &[bool],
-) -> Result<f64, DiagnoseError> {
-    let setup = bench.setup(&fitted.members);
-    let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let runs = estimation.innovations(&fitted.fit.values)?;
+fn of_channels(bench: &Bench<'_>, fitted: &Fitted, channels: &[bool]) -> Result<f64> {
+    let runs = bench.innovations(fitted)?;
     let samples = runs.iter().flatten();
     let own = samples.filter(|sample| channels[sample.channel]);
     Ok(bench.weight * own.map(Innovation::log_likelihood).sum::<f64>())

@@ -1,26 +1,22 @@
 //! The report of a comparison: the hypotheses with their estimates and ties, and the residual of the best one.
 
-use super::DiagnoseError;
 use super::alternative::Rival;
-use super::bench::Bench;
-use super::calibration::{TIED, tempered};
-use super::changes::Changes;
-use super::compare::{Comparison, has_deviation};
-use super::evidence::Fitted;
+use super::calibration::{SEARCHED, TIED, names, of_count, prior, tempered};
+use super::compare::has_deviation;
 use super::law::FittedLaw;
-use super::prior::{names, of_count, prior};
-use super::report::{
-    Detectable, Found, GapVerdict, Hint, Hypothesis, LAW, Left, Report, Value, Where,
+use super::report::LAW;
+use super::screen::{Screened, imitated};
+use super::yardstick::Yardsticks;
+use super::{
+    Bench, Changes, Comparison, Detectable, Fitted, Found, GapVerdict, Hypothesis, Left, Report,
+    Result, Value, Where, Yardstick,
 };
-use super::screen::Screen;
-use super::twins;
-use super::unknown;
-use super::yardstick::{Yardstick, Yardsticks};
 use crate::effects::{Acts, Candidate, EffectModel, Part};
 use appell_estimate::{Along, Unknown};
+use appell_recordings::DataSet;
 
 /// Size in its standard deviations that is detected with near certainty.
-pub(super) const DETECTABLE: f64 = 5.0;
+const DETECTABLE: f64 = 5.0;
 /// Number of hypotheses that are reported even if improbable.
 const TOLD: usize = 10;
 /// Limit of log odds, to avoid overflow.
@@ -31,8 +27,8 @@ impl Report {
     /// under `failed`.
     pub(super) fn measured<'l>(
         &mut self,
-        measured: Option<Result<FittedLaw<'l>, DiagnoseError>>,
-    ) -> Result<Option<FittedLaw<'l>>, DiagnoseError> {
+        measured: Option<Result<FittedLaw<'l>>>,
+    ) -> Result<Option<FittedLaw<'l>>> {
         let measured = match measured {
             Some(Ok(measured)) => measured,
             Some(Err(reason)) => {
@@ -53,11 +49,11 @@ impl Report {
 /// The report without the results on held-out runs.
 pub(super) fn assemble(
     bench: &Bench<'_>,
-    screen: &Screen,
+    screen: &[Screened],
     comparison: &Comparison,
     place: Where,
     rivals: &[Rival<'_>],
-) -> Result<Report, DiagnoseError> {
+) -> Result<Report> {
     // A size without a yardstick is a size nevertheless.
     let yardsticks = Yardsticks::new(bench, comparison.best()).ok();
     let mut which = which(bench, comparison, yardsticks.as_ref())?;
@@ -81,14 +77,13 @@ pub(super) fn assemble(
         }],
         None => found(bench.effects, &best.members),
     };
+    let failed = comparison.failed.iter();
+    let failed = failed.map(|(members, reason)| (names(bench.effects, members), reason.clone()));
+    let mut screened: Vec<&Screened> = screen.iter().collect();
+    screened.sort_by_key(|one| one.candidate);
+    let deviations = screened.into_iter();
+    let deviations = deviations.filter_map(|one| Some((one.candidate, *one.deviations.first()?)));
     Ok(Report {
-        mechanism: bench.set.mechanism.name.clone(),
-        robot: bench.set.robot.as_ref().map(|robot| robot.format.word()),
-        locked: bench
-            .set
-            .robot
-            .as_ref()
-            .map_or_else(Vec::new, |robot| robot.locked.clone()),
         verdict,
         is_by_simulation: bench.is_over_windows(),
         place: if verdict == GapVerdict::NoGap || leads {
@@ -98,17 +93,13 @@ pub(super) fn assemble(
         },
         which: keep.unwrap_or(which),
         tied,
-        detectable: detectable(bench, screen),
-        failed: comparison
-            .failed
-            .iter()
-            .map(|(members, reason)| (names(bench.effects, members), reason.clone()))
-            .collect(),
+        detectable: detectable(bench.effects, &bench.set, deviations),
+        failed: failed.collect(),
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),
         independent: comparison.independent,
         found,
-        ..Report::default()
+        ..Report::of(&bench.set)
     })
 }
 
@@ -128,9 +119,9 @@ fn which(
     bench: &Bench<'_>,
     comparison: &Comparison,
     yardsticks: Option<&Yardsticks<'_>>,
-) -> Result<Vec<Hypothesis>, DiagnoseError> {
+) -> Result<Vec<Hypothesis>> {
     // If the comparison fails, no hypothesis counts as equivalent.
-    let twins = twins::of_best(bench, comparison).unwrap_or_default();
+    let twins = twins(bench, comparison).unwrap_or_default();
     let base = comparison.nominal().evidence.log();
     let known = 1.0 - comparison.unknown;
     let mut which: Vec<Hypothesis> = Vec::new();
@@ -154,7 +145,9 @@ fn which(
             effects,
             probability: if is_twin { 0.0 } else { probability * known },
             log_bayes_factor: Some(fitted.evidence.log() - base),
-            parameters: values(bench, fitted, yardsticks),
+            parameters: (fitted.members.iter())
+                .flat_map(|&member| values(bench.candidate(member), bench, fitted, yardsticks))
+                .collect(),
             changes: Some(Changes::of(bench, fitted)?),
         });
     }
@@ -166,6 +159,38 @@ fn which(
     which.extend(unresolved);
     which.push(Hypothesis::unknown(comparison.unknown));
     Ok(which)
+}
+
+/// Indices of the fits that are equivalent to the best one but for their names, such as a bias of a motor and a constant
+/// force along it: no experiment can distinguish them, so they share one probability. Their evidence is the same within
+/// the accuracy of searches, and about the best one the sensitivities of their other members are linearly dependent.
+fn twins(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<usize>> {
+    let best = comparison.best();
+    let is_alike = |place: &usize| {
+        let (own, _) = &comparison.fits[*place];
+        own.members.len() == best.members.len()
+            && (own.evidence.log() - best.evidence.log()).abs() < SEARCHED
+    };
+    let alike: Vec<usize> = (1..comparison.fits.len()).filter(is_alike).collect();
+    if best.members.is_empty() || alike.is_empty() {
+        return Ok(Vec::new());
+    }
+    let imitated = imitated(bench, best)?;
+    // Short lags and delays are similar, but not equivalent.
+    let is_late = |member: usize| {
+        let acts = bench.candidate(member).acts;
+        matches!(
+            acts,
+            Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_)
+        )
+    };
+    let says_the_same = |place: &usize| {
+        let mut members = comparison.fits[*place].0.members.iter();
+        members.all(|&member| {
+            best.members.contains(&member) || imitated.contains(&member) && !is_late(member)
+        })
+    };
+    Ok(alike.into_iter().filter(says_the_same).collect())
 }
 
 /// The best hypothesis with a lag in the place of a delay that is too short to be distinguished from it.
@@ -223,7 +248,7 @@ fn join(
     rivals: &[Rival<'_>],
     bench: &Bench<'_>,
     comparison: &Comparison,
-) -> Result<(), DiagnoseError> {
+) -> Result<()> {
     let (best, probability) = &comparison.fits[0];
     // If `unknown` is certain, 1 − p underflows: the evidence of the residual law bounds it.
     let left = comparison.left.as_ref();
@@ -290,14 +315,6 @@ pub(super) fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
     }
 }
 
-/// Values of the members of a hypothesis.
-fn values(bench: &Bench<'_>, fitted: &Fitted, yardsticks: Option<&Yardsticks<'_>>) -> Vec<Value> {
-    let members = fitted.members.iter().map(|&member| bench.candidate(member));
-    members
-        .flat_map(|candidate| values_of(candidate, bench, fitted, yardsticks))
-        .collect()
-}
-
 /// The name of a size; of an effect at a group of sites, with the site.
 fn named(candidate: &Candidate, short: &str) -> String {
     let name = candidate.name();
@@ -308,7 +325,7 @@ fn named(candidate: &Candidate, short: &str) -> String {
 }
 
 /// Values of a candidate.
-fn values_of(
+fn values(
     candidate: &Candidate,
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -330,30 +347,43 @@ fn values_of(
     let mut values = Vec::new();
     for (place, free) in fitted.fit.free.iter().enumerate() {
         let value = free.to_value(fitted.fit.coordinates[place]);
-        let (short, unit) = match (free.unknown, candidate.acts) {
-            (Unknown::Parameter(index), Acts::Items) if part_of(index).is_some() => {
-                let quantity = &info.parameters[index];
-                (candidate.short(&quantity.name), quantity.unit.to_string())
-            }
+        let name = match free.unknown {
+            Unknown::Parameter(index) => info.parameters[index].name.as_ref(),
+            _ => "",
+        };
+        let (short, parameter, without, yardstick) = match (free.unknown, candidate.acts) {
+            (Unknown::Parameter(index), Acts::Items) => match part_of(index) {
+                Some((_, part)) if part.is_shape() => {
+                    (candidate.short(name), Some(index), None, None)
+                }
+                Some(_) => {
+                    let own = yardsticks.and_then(|own| own.of_size(fitted, candidate, index));
+                    (candidate.short(name), Some(index), Some(0.0), own)
+                }
+                None => continue,
+            },
             (Unknown::Parameter(index), Acts::Parameter(own)) if index == own => {
-                let quantity = &info.parameters[index];
+                let stated = bench.set.parameters[index].value;
+                let own = Yardstick::of_parameter(value, stated);
                 (
-                    candidate.short_of_error(&quantity.name),
-                    quantity.unit.to_string(),
+                    candidate.short_of_error(name),
+                    Some(index),
+                    Some(stated),
+                    own,
                 )
             }
-            (unknown, acts) if of_signal == Some(unknown) => match acts {
-                Acts::Bias(channel) => ("bias", channel_unit(bench, channel)),
-                Acts::Scale(_) => ("scale", "1".to_owned()),
-                Acts::Lag(_) | Acts::Slow(_) => ("time_constant", "s".to_owned()),
-                _ => ("delay", "s".to_owned()),
-            },
+            (unknown, acts) if of_signal == Some(unknown) => {
+                let of_time = Yardstick::of_time(value, bench.step);
+                match acts {
+                    Acts::Bias(_) => ("bias", None, Some(0.0), None),
+                    Acts::Scale(_) => ("scale", None, Some(1.0), None),
+                    Acts::Lag(_) | Acts::Slow(_) => ("time_constant", None, Some(0.0), of_time),
+                    _ => ("delay", None, Some(0.0), of_time),
+                }
+            }
             _ => continue,
         };
-        let scale = match free.unknown {
-            Unknown::Parameter(index) => info.parameters[index].scale,
-            _ => 1.0,
-        };
+        let (scale, unit) = unit(&bench.set, bench.effects, candidate.acts, parameter);
         let told = Value {
             name: named(candidate, short),
             value: value / scale,
@@ -363,36 +393,34 @@ fn values_of(
             is_determined: !free
                 .prior
                 .is_some_and(|[_, std]| deviation(place) > 0.5 * std),
-            yardstick: None,
+            yardstick,
         };
-        values.push(match (free.unknown, candidate.acts) {
-            (Unknown::Parameter(index), Acts::Parameter(_)) => {
-                let stated = bench.set.parameters[index].value;
-                let yardstick = Yardstick::of_parameter(value, stated);
-                Value { yardstick, ..told }.of_size(stated / scale)
-            }
-            (Unknown::Parameter(index), _) => match part_of(index) {
-                Some((_, part)) if !part.is_shape() => {
-                    let yardstick =
-                        yardsticks.and_then(|own| own.of_size(fitted, candidate, index));
-                    Value { yardstick, ..told }.of_size(0.0)
-                }
-                _ => told,
-            },
-            (_, Acts::Scale(_)) => told.of_size(1.0),
-            (_, Acts::Bias(_)) => told.of_size(0.0),
-            _ => {
-                let yardstick = Yardstick::of_time(value, bench.step);
-                Value { yardstick, ..told }.of_size(0.0)
-            }
+        values.push(match without {
+            Some(without) => told.of_size(without / scale),
+            None => told,
         });
     }
     values
 }
 
+/// How many SI units the unit of a size has, and that unit: of a parameter, or of an effect on a signal.
+fn unit(set: &DataSet, model: &EffectModel, acts: Acts, parameter: Option<usize>) -> (f64, String) {
+    match (parameter, acts) {
+        (Some(index), _) => {
+            let quantity = &model.info().parameters[index];
+            (quantity.scale, quantity.unit.to_string())
+        }
+        (None, Acts::Bias(channel)) => (1.0, channel_unit(set, model, channel)),
+        (None, Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_)) => {
+            (1.0, "s".to_owned())
+        }
+        _ => (1.0, "1".to_owned()),
+    }
+}
+
 /// SI unit of a measured channel.
-fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
-    let measured = bench.set.measured(bench.effects.info());
+fn channel_unit(set: &DataSet, model: &EffectModel, channel: usize) -> String {
+    let measured = set.measured(model.info());
     let Some((channel, _)) = measured.get(channel) else {
         return String::new();
     };
@@ -404,23 +432,6 @@ fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
         "1/s" if unit.has_angle() => "rad/s".to_owned(),
         _ => si,
     }
-}
-
-/// Channels outside the model on which the gap of the nominal model depends.
-pub(super) fn hints(
-    bench: &Bench<'_>,
-    comparison: &Comparison,
-) -> Result<Vec<Hint>, DiagnoseError> {
-    let info = bench.effects.info();
-    let hints = unknown::hints(bench, comparison.nominal())?.into_iter();
-    Ok(hints
-        .map(|one| Hint {
-            equation: info.states[one.place].name.to_string(),
-            variable: one.variable,
-            gain: one.gain,
-            log_bayes_factor: one.log_bayes_factor,
-        })
-        .collect())
 }
 
 fn left(bench: &Bench<'_>, comparison: &Comparison) -> Option<Left> {
@@ -443,7 +454,7 @@ fn left(bench: &Bench<'_>, comparison: &Comparison) -> Option<Left> {
         place,
         variable,
         log_bayes_factor: left.log_bayes_factor,
-        gain: first.gain,
+        gain: first.gains.gain,
         explained: comparison.explained(),
     })
 }
@@ -466,42 +477,37 @@ fn disturbances(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Vec<(Stri
         .collect()
 }
 
-/// The smallest detectable size of each effect.
-fn detectable(bench: &Bench<'_>, screen: &Screen) -> Vec<Detectable> {
-    let info = bench.effects.info();
+/// The smallest detectable size of each effect, from the standard deviation of the first size of candidates.
+pub(super) fn detectable(
+    model: &EffectModel,
+    set: &DataSet,
+    deviations: impl Iterator<Item = (usize, f64)>,
+) -> Vec<Detectable> {
     let mut told: Vec<Detectable> = Vec::new();
-    let mut list: Vec<_> = screen.list.iter().collect();
-    list.sort_by_key(|one| one.candidate);
-    for one in list {
-        let candidate = bench.candidate(one.candidate);
-        let name = candidate.name();
-        let Some(&deviation) = one.deviations.first() else {
-            continue;
-        };
-        if deviation <= 0.0 || told.iter().any(|own| own.effect == name) {
+    for (candidate, deviation) in deviations {
+        let candidate = model.candidate(candidate);
+        let effect = candidate.name();
+        if deviation <= 0.0 || told.iter().any(|own| own.effect == effect) {
             continue;
         }
-        let parameter = match candidate.acts {
-            Acts::Items => bench.own(candidate).first().map(|(index, _)| *index),
-            Acts::Parameter(index) => Some(index),
-            _ => None,
-        };
-        let (scale, unit) = match (candidate.acts, parameter) {
-            (_, Some(index)) => {
-                let quantity = &info.parameters[index];
-                (quantity.scale, quantity.unit.to_string())
-            }
-            (Acts::Bias(channel), _) => (1.0, channel_unit(bench, channel)),
-            (Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_), _) => {
-                (1.0, "s".to_owned())
-            }
-            _ => (1.0, "1".to_owned()),
-        };
+        let parameter = model.first_parameter(candidate);
+        let (scale, unit) = unit(set, model, candidate.acts, parameter);
         told.push(Detectable {
-            effect: name,
+            effect,
             smallest: DETECTABLE * deviation / scale,
             unit,
         });
     }
     told
+}
+
+impl EffectModel {
+    /// Index of the first parameter of an effect on the equations.
+    pub(super) fn first_parameter(&self, candidate: &Candidate) -> Option<usize> {
+        match candidate.acts {
+            Acts::Items => self.own(candidate).first().map(|(index, _)| *index),
+            Acts::Parameter(index) => Some(index),
+            _ => None,
+        }
+    }
 }

@@ -6,11 +6,9 @@ use appell_recordings::{Channel, DataSet, FindingKind};
 use appell_spec::mechanism::Interpolation;
 use nalgebra::{DMatrix, DVector};
 
-use super::DiagnoseError;
-use super::bench::Bench;
+use super::bench::SHARES;
 use super::calibration::TIED;
-use super::evidence::Fitted;
-use super::report::{Interpolated, Tolerances};
+use super::{Bench, Fitted, Interpolated, Result, Tolerances};
 
 /// Factors on all tolerances that are tried.
 const FACTORS: [f64; 6] = [1.5, 2.0, 2.5, 3.0, 5.0, 10.0];
@@ -71,7 +69,7 @@ pub(super) fn interpolated(
     bench: &Bench<'_>,
     fitted: &Fitted,
     set: &DataSet,
-) -> Result<Vec<Interpolated>, DiagnoseError> {
+) -> Result<Vec<Interpolated>> {
     let is_smooth = |channel: &&Channel| {
         let mut findings = set.findings.iter();
         channel.interpolation.is_none()
@@ -105,7 +103,7 @@ pub(super) fn interpolated(
 }
 
 /// Log likelihood of the one-step predictions of a hypothesis after a fit to these recordings.
-fn log_likelihood(bench: &Bench<'_>, fitted: &Fitted, set: &DataSet) -> Result<f64, DiagnoseError> {
+fn log_likelihood(bench: &Bench<'_>, fitted: &Fitted, set: &DataSet) -> Result<f64> {
     let stepwise = Bench::new(set, bench.effects)?;
     let setup = stepwise.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &stepwise.recordings)?;
@@ -117,6 +115,6 @@ fn log_likelihood(bench: &Bench<'_>, fitted: &Fitted, set: &DataSet) -> Result<f
         }
         stepwise.begin(&estimation, &mut start)?;
     }
-    let again = stepwise.fit_roughly(&fitted.members, &estimation, &start)?;
+    let again = stepwise.fit(SHARES, &fitted.members, &estimation, &start)?;
     Ok(again.fit.log_likelihood)
 }

@@ -6,15 +6,13 @@
 //! there is nearly enough for a fit.
 
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 
 use appell_estimate::{Estimation, Innovation, Recording, Setup, in_parallel};
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
-use super::screen::{LEAST_GAIN, QUIET, Screened, directions, least, quieten};
-use crate::effects::{Drive, Part};
+use super::screen::{LEAST_GAIN, QUIET, Screened, directions, least};
+use super::starts::scale_process_noise;
+use super::{Bench, Fitted, Result};
+use crate::effects::{Candidate, Drive, Part};
 
 /// Sizes that are tried, relative to the range of the coordinate: most gears have less backlash than the largest, and
 /// less than the smallest is hardly detectable.
@@ -48,48 +46,40 @@ pub(super) fn screened(
     fitted: &Fitted,
     by_inputs: f64,
     best: f64,
-) -> Result<Vec<Screened>, DiagnoseError> {
+) -> Result<Vec<Screened>> {
     let effects = bench.effects;
     // With feedback inputs, innovations of an unconverged fit carry no information about reversals.
-    if bench.input_innovations.count > 0 && !fitted.fit.is_optimum() {
+    if bench.input_innovations.count() > 0 && !fitted.fit.is_optimum() {
         return Ok(Vec::new());
     }
     // One additional coordinate at a time, and none together with creeping contacts.
-    if fitted
-        .members
-        .iter()
-        .any(|&member| effects.stands_alone(member))
-    {
+    let mut members = fitted.members.iter();
+    if members.any(|&member| effects.stands_alone(member)) {
         return Ok(Vec::new());
     }
     let p = &fitted.fit.values[..effects.with(&[]).info().parameter_len()];
+    // Through an encoder on the motor backlash is visible for some rows only: too short for windows.
+    let is_seen =
+        |own: &Candidate| own.shows.is_empty() || bench.is_shown(own) && !bench.is_over_windows();
+    let all = effects.candidates.iter().enumerate();
+    let seen = all.filter(|(_, own)| is_seen(own));
+    let seen = seen.filter_map(|(index, own)| Some((index, own.brings?)));
+    let seen: Vec<(usize, usize)> = seen.collect();
+    if seen.is_empty() {
+        return Ok(Vec::new());
+    }
+    let setup = bench.setup(&fitted.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let runs = estimation.innovations(&fitted.fit.values);
+    let runs = runs.unwrap_or_default();
     let mut drives: BTreeMap<usize, Option<Drive>> = BTreeMap::new();
-    let mut innovations: Option<Vec<Vec<Innovation>>> = None;
     let mut brought = Vec::new();
-    for (index, candidate) in effects.candidates.iter().enumerate() {
-        // Through an encoder on the motor backlash is visible for some rows only: too short for windows.
-        let is_seen =
-            candidate.shows.is_empty() || bench.is_shown(candidate) && !bench.is_over_windows();
-        let Some(beside) = candidate.brings.filter(|_| is_seen) else {
-            continue;
-        };
-        if let Entry::Vacant(unknown) = drives.entry(beside) {
-            if innovations.is_none() {
-                let setup = bench.setup(&fitted.members);
-                let estimation = Estimation::new(&setup, &bench.recordings)?;
-                innovations = Some(
-                    estimation
-                        .innovations(&fitted.fit.values)
-                        .unwrap_or_default(),
-                );
-            }
-            let runs = innovations.as_deref().unwrap_or_default();
+    for (index, beside) in seen {
+        let drive = drives.entry(beside).or_insert_with(|| {
             let drive = Drive::of(effects.with(&[]), p, beside);
-            unknown.insert(drive.filter(|drive| is_biased(bench, runs, drive, best)));
-        }
-        if let Some(drive) = &drives[&beside] {
-            brought.push((index, drive.clone()));
-        }
+            drive.filter(|drive| is_biased(bench, &runs, drive, best))
+        });
+        brought.extend(drive.clone().map(|drive| (index, drive)));
     }
     if brought.is_empty() {
         return Ok(Vec::new());
@@ -99,10 +89,18 @@ pub(super) fn screened(
         if !effects.augment(index, &drive) {
             return Ok(None);
         }
-        let grid = Grid::of(bench, fitted, index, sample.as_ref(), least(best));
+        let members = [fitted.members.as_slice(), &[index]].concat();
+        let grid = Grid {
+            bench,
+            fitted,
+            candidate: index,
+            setup: bench.setup(&members),
+            sample: sample.as_ref(),
+            least: least(best),
+        };
         Ok(best_size(&grid)?.map(|one| one.beyond_inputs(by_inputs)))
     });
-    let list: Result<Vec<_>, DiagnoseError> = list.into_iter().collect();
+    let list: Result<Vec<_>> = list.into_iter().collect();
     Ok(list?.into_iter().flatten().collect())
 }
 
@@ -181,7 +179,7 @@ struct Tried {
 }
 
 /// The size with the largest gain.
-fn best_size(grid: &Grid<'_, '_>) -> Result<Option<Screened>, DiagnoseError> {
+fn best_size(grid: &Grid<'_, '_>) -> Result<Option<Screened>> {
     let (bench, candidate) = (grid.bench, grid.candidate);
     let info = bench.effects.info();
     let site = bench.candidate(candidate).site.as_str();
@@ -235,25 +233,7 @@ struct Grid<'g, 'b> {
     least: f64,
 }
 
-impl<'g, 'b> Grid<'g, 'b> {
-    fn of(
-        bench: &'g Bench<'b>,
-        fitted: &'g Fitted,
-        candidate: usize,
-        sample: Option<&'g Sample>,
-        least: f64,
-    ) -> Self {
-        let members = [fitted.members.as_slice(), &[candidate]].concat();
-        Self {
-            bench,
-            fitted,
-            candidate,
-            setup: bench.setup(&members),
-            sample,
-            least,
-        }
-    }
-
+impl Grid<'_, '_> {
     /// The values of the candidate's parameters.
     fn values(&self, size: f64, factor: f64) -> Vec<(usize, f64)> {
         let (bench, info) = (self.bench, self.bench.effects.info());
@@ -268,7 +248,7 @@ impl<'g, 'b> Grid<'g, 'b> {
 
     /// Evaluates sizes and factors of the shape, the best first, with process noise multiplied by `levels`. If none is
     /// promising, the gains are those extrapolated from the sample.
-    fn tried(&self, all: &[(f64, f64)], levels: f64) -> Result<Vec<Tried>, DiagnoseError> {
+    fn tried(&self, all: &[(f64, f64)], levels: f64) -> Result<Vec<Tried>> {
         let on_all_rows = |all: &[(f64, f64)]| {
             let log_likelihood = self.fitted.fit.log_likelihood;
             self.gains(all, levels, &self.bench.recordings, log_likelihood)
@@ -286,12 +266,8 @@ impl<'g, 'b> Grid<'g, 'b> {
         {
             return Ok(rough);
         }
-        let best: Vec<_> = rough
-            .iter()
-            .take(BEST)
-            .map(|one| (one.size, one.factor))
-            .collect();
-        on_all_rows(&best)
+        let best = rough.iter().take(BEST).map(|one| (one.size, one.factor));
+        on_all_rows(&best.collect::<Vec<_>>())
     }
 
     /// Their gains on some recordings, relative to this log likelihood of the hypothesis, without those at which the
@@ -302,7 +278,7 @@ impl<'g, 'b> Grid<'g, 'b> {
         levels: f64,
         recordings: &[Recording],
         log_likelihood: f64,
-    ) -> Result<Vec<Tried>, DiagnoseError> {
+    ) -> Result<Vec<Tried>> {
         let (bench, fitted) = (self.bench, self.fitted);
         let estimation = Estimation::new(&self.setup, recordings)?;
         let mut tried = Vec::new();
@@ -312,7 +288,7 @@ impl<'g, 'b> Grid<'g, 'b> {
             for &(place, value) in &own {
                 values[place] = value;
             }
-            quieten(&estimation, &mut values, levels)?;
+            scale_process_noise(&estimation, &mut values, levels)?;
             bench.hide(&[self.candidate], &estimation, &mut values)?;
             if let Ok(likelihood) = estimation.log_likelihood(&values) {
                 let gain = bench.weight * likelihood - log_likelihood;

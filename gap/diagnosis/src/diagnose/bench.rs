@@ -1,20 +1,18 @@
 //! The estimation problem common to all hypotheses: recordings, the model with all candidates, the free
 //! parameters of each hypothesis, and the initial values of a search.
 
-mod fits;
-
 use appell_estimate::{
-    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Layout, Measured, Recording, Setup,
-    Unknown,
+    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Innovation, Layout, Measured,
+    Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
 
-use super::DiagnoseError;
-use super::evidence::Fitted;
-use super::feedback::InputInnovations;
+use super::evidence::Evidence;
+use super::feedback::{InputInnovations, for_kicks};
 use super::hardware::Hardware;
 use super::start_levels::{level, sizes};
 use super::unmodelled::UnmodelledChannel;
+use super::{DiagnoseError, Fitted, Result};
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
 use appell_recordings::{DataSet, Part, Run};
@@ -98,15 +96,15 @@ pub(super) struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     /// For one-step predictions of the training runs, with process noise.
-    pub(super) fn new(set: &DataSet, effects: &'a EffectModel) -> Result<Self, DiagnoseError> {
+    pub(super) fn new(set: &DataSet, effects: &'a EffectModel) -> Result<Self> {
         Self::of(set, effects, level)
     }
 
     pub(super) fn of(
         set: &DataSet,
         effects: &'a EffectModel,
-        mut level: impl FnMut(&Estimation<'_>, &mut Problem) -> Result<(), DiagnoseError>,
-    ) -> Result<Self, DiagnoseError> {
+        mut level: impl FnMut(&Estimation<'_>, &mut Problem) -> Result<()>,
+    ) -> Result<Self> {
         let set = set.bound_to(&effects.mechanism);
         let info = effects.info();
         let measured: Vec<Measured> = set.measured(info).iter().map(|(_, m)| *m).collect();
@@ -153,7 +151,7 @@ impl<'a> Bench<'a> {
     }
 
     /// The same problem for other equations, with the noise levels of this one.
-    pub(super) fn beside<'o>(&self, effects: &'o EffectModel) -> Result<Bench<'o>, DiagnoseError> {
+    pub(super) fn beside<'o>(&self, effects: &'o EffectModel) -> Result<Bench<'o>> {
         let levels = |_: &Estimation<'_>, problem: &mut Problem| {
             problem.levels.clone_from(&self.problem.levels);
             Ok(())
@@ -179,12 +177,8 @@ impl<'a> Bench<'a> {
     /// Whether a channel measures a state that a candidate replaces by an output.
     pub(super) fn is_shown(&self, candidate: &Candidate) -> bool {
         let info = self.effects.info();
-        let mut states = candidate
-            .shows
-            .iter()
-            .map(|(state, _)| info.state_index(state));
-        states.any(|state| {
-            let shown = state.map(Measured::State);
+        candidate.shows.iter().any(|(state, _)| {
+            let shown = info.state_index(state).map(Measured::State);
             self.measured.iter().any(|own| Some(*own) == shown)
         })
     }
@@ -237,12 +231,9 @@ impl<'a> Bench<'a> {
             ..Setup::new(model, &measured)
         };
         let candidates = self.effects.candidates.iter();
-        let hidden = candidates
-            .filter(|candidate| candidate.hides.is_some())
-            .count();
-        setup
-            .disturbances
-            .truncate(self.effects.info().speeds - hidden);
+        let hidden = candidates.filter(|candidate| candidate.hides.is_some());
+        let forces = self.effects.info().speeds - hidden.count();
+        setup.disturbances.truncate(forces);
         let members = members.iter().map(|&member| self.candidate(member).acts);
         for acts in members {
             admit(&mut setup, acts, self.step);
@@ -250,9 +241,16 @@ impl<'a> Bench<'a> {
         setup
     }
 
-    /// Difference in log likelihood between a hypothesis with delayed channels and another one, on the rows that the delay
-    /// leaves.
-    pub(super) fn gain_of_late(&self, from: &Fitted, to: &Fitted) -> Result<f64, DiagnoseError> {
+    /// The innovations of a hypothesis.
+    pub(super) fn innovations(&self, fitted: &Fitted) -> Result<Vec<Vec<Innovation>>> {
+        let setup = self.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        Ok(estimation.innovations(&fitted.fit.values)?)
+    }
+
+    /// Difference in log likelihood between a hypothesis with delayed channels and another one, on the rows that the
+    /// delay leaves.
+    pub(super) fn gain_of_late(&self, from: &Fitted, to: &Fitted) -> Result<f64> {
         let (mut before, mut after) = (self.setup(&from.members), self.setup(&to.members));
         let channels = before.channels.iter_mut().zip(&mut after.channels);
         for (index, (before, after)) in channels.enumerate() {
@@ -351,7 +349,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Sets scales with tolerances to those of perfect channels; effects of members remain.
-    pub(super) fn perfected(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
+    pub(super) fn perfected(&self, fitted: &mut Fitted) -> Result<()> {
         for free in &self.problem.wanted {
             let is_scale = matches!(free.unknown, Unknown::Scale(_));
             if is_scale && !self.is_wrong(&fitted.members, free.unknown) {
@@ -429,6 +427,108 @@ impl<'a> Bench<'a> {
     }
 }
 
+/// Fits of hypotheses.
+impl Bench<'_> {
+    /// Fits a hypothesis from initial values.
+    pub(super) fn fit(
+        &self,
+        effort: Effort,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted> {
+        self.fit_by(Fit::quick, effort, members, estimation, start)
+    }
+
+    /// The effort of a fit.
+    pub(super) fn effort(&self) -> Effort {
+        if self.is_over_windows() {
+            COARSE
+        } else {
+            EFFORT
+        }
+    }
+
+    /// The effort of a fit that is given up where it stays far below a log posterior.
+    pub(super) fn above(&self, floor: f64) -> Effort {
+        Effort {
+            floor,
+            ..self.effort()
+        }
+    }
+
+    /// The effort of a fit to a twentieth of a standard deviation, for values that are reported alone.
+    pub(super) fn finely(&self) -> Effort {
+        Effort {
+            gain: FINELY * self.effort().gain,
+            ..self.effort()
+        }
+    }
+
+    /// Fits a hypothesis by an optimisation method.
+    pub(super) fn fit_by(
+        &self,
+        search: Search,
+        effort: Effort,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted> {
+        let free = self.free(members, estimation.setup());
+        let fit = if self.is_over_windows() && self.is_late(members) {
+            // With the delay the states at the beginnings of the windows change.
+            let mut start = start.to_vec();
+            self.begin_later(estimation, &mut start)?;
+            start = self
+                .weighed(estimation, &start, &free, search, effort)?
+                .values;
+            self.begin_later(estimation, &mut start)?;
+            self.weighed(estimation, &start, &free, search, effort)?
+        } else {
+            self.weighed(estimation, start, &free, search, effort)?
+        };
+        let by_inputs = for_kicks(&self.input_innovations, self.weight, estimation, &fit)?;
+        let evidence = Evidence::of(self, members, &fit, by_inputs);
+        Ok(Fitted {
+            members: members.to_vec(),
+            layout: estimation.layout(),
+            fit,
+            evidence,
+            coloured: 0.0,
+        })
+    }
+
+    /// A fit with weighted rows: the objective is divided by the weight, so that the prior is scaled instead.
+    pub(super) fn weighed(
+        &self,
+        estimation: &Estimation<'_>,
+        start: &[f64],
+        free: &[Free],
+        search: Search,
+        effort: Effort,
+    ) -> Result<Fit> {
+        let firm = free.iter().map(|one| Free {
+            prior: (one.prior).map(|[value, deviation]| [value, deviation * self.weight.sqrt()]),
+            ..*one
+        });
+        let effort = Effort {
+            gain: effort.gain / self.weight,
+            floor: effort.floor / self.weight,
+            ..effort
+        };
+        let fit = search(estimation, start, &firm.collect::<Vec<_>>(), effort)?;
+        Ok(Fit {
+            free: free.to_vec(),
+            log_likelihood: self.weight * fit.log_likelihood,
+            log_posterior: self.weight * fit.log_posterior,
+            information: self.weight * fit.information,
+            curvature: self.weight * fit.curvature,
+            gain: self.weight * fit.gain,
+            ..fit
+        })
+    }
+}
+
 /// Replaces measured states by the outputs of a member.
 fn show(member: &Candidate, model: &dyn Model, measured: &mut [Measured]) {
     let info = model.info();
@@ -458,8 +558,8 @@ fn admit(setup: &mut Setup<'_>, acts: Acts, step: f64) {
     }
 }
 
-/// Prior standard deviation of the error of a value that is in error; of a relative error, which is stated as zero, relative
-/// to one.
+/// Prior standard deviation of the error of a value that is in error; of a relative error, which is stated as zero,
+/// relative to one.
 pub(super) fn wrong(value: f64) -> f64 {
     let size = if value == 0.0 { 1.0 } else { value.abs() };
     WRONG * size

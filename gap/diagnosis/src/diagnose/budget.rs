@@ -8,20 +8,18 @@
 
 use appell_estimate::Estimation;
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::compare::Comparison;
-use super::evidence::Fitted;
+use super::bench::SHARES;
 use super::prediction::{Errors, Paired};
-use super::report::{LAW, REFIT, REST, Share};
+use super::report::{LAW, REFIT, REST};
+use super::{Bench, Comparison, Fitted, Result, Share};
 use crate::effects::{Acts, EffectModel};
 
 /// Prediction errors of the models between which the gap is divided.
 pub(super) struct Ends<'e> {
     /// Of the stated model.
     pub(super) stated: &'e Errors,
-    /// Of the model to which effects are added.
-    pub(super) base: &'e Errors,
+    /// Of the re-fitted model; effects are added to the better of both.
+    pub(super) refitted: &'e Errors,
     /// With all effects.
     pub(super) effects: &'e Errors,
     /// With all effects and a measured law.
@@ -37,8 +35,8 @@ pub(super) struct Ends<'e> {
 pub(super) fn of(
     effects: &[(String, Vec<usize>)],
     ends: &Ends<'_>,
-    errors: impl Fn(&[usize]) -> Result<Errors, DiagnoseError>,
-) -> Result<Vec<Share>, DiagnoseError> {
+    errors: impl Fn(&[usize]) -> Result<Errors>,
+) -> Result<Vec<Share>> {
     let count = effects.len();
     let all = (1 << count) - 1;
     let mut between: Vec<Errors> = Vec::new();
@@ -46,7 +44,14 @@ pub(super) fn of(
         between.push(errors(&subset(effects, set))?);
     }
     let floor = ends.floor;
-    let mut models = vec![ends.stated, ends.base];
+    let means = Paired::of(&[ends.stated, ends.refitted]).means();
+    // If the fitted parameters predict worse than the stated ones, these are the base.
+    let base = if means[1] < means[0] {
+        ends.refitted
+    } else {
+        ends.stated
+    };
+    let mut models = vec![ends.stated, base];
     models.extend(&between);
     if count > 0 {
         models.push(ends.effects);
@@ -169,7 +174,7 @@ pub(super) fn with(
     comparison: &Comparison,
     best: &Fitted,
     members: &[usize],
-) -> Result<Fitted, DiagnoseError> {
+) -> Result<Fitted> {
     let known = |own: &&Fitted| own.members.iter().all(|one| members.contains(one));
     let known = comparison.fits.iter().map(|(own, _)| own).filter(known);
     let nearest = known.max_by(|a, b| a.evidence.log().total_cmp(&b.evidence.log()));
@@ -186,23 +191,20 @@ pub(super) fn with(
     );
     let new = members.iter().filter(|one| !nearest.members.contains(one));
     for &member in new {
-        let brought = bench.brought(member, &setup);
-        let brought = brought
-            .iter()
-            .map(|free| estimation.layout().place(free.unknown));
-        let own = bench
-            .own(bench.candidate(member))
-            .into_iter()
-            .map(|(place, _)| Ok(place));
-        for place in brought.chain(own) {
-            let place = place?;
+        let candidate = bench.candidate(member);
+        let own = bench.own(candidate).into_iter();
+        let mut places: Vec<usize> = own.map(|(place, _)| place).collect();
+        if let Some(free) = bench.of_signal(candidate.acts, &setup) {
+            places.push(estimation.layout().place(free.unknown)?);
+        }
+        if let Acts::Parameter(index) = candidate.acts {
+            places.push(index);
+        }
+        for place in places {
             start[place] = whole[place];
         }
-        if let Acts::Parameter(index) = bench.candidate(member).acts {
-            start[index] = whole[index];
-        }
     }
-    bench.fit_roughly(members, &estimation, &start)
+    bench.fit(SHARES, members, &estimation, &start)
 }
 
 #[cfg(test)]

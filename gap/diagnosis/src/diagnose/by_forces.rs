@@ -11,24 +11,21 @@
 //! | `motions.rs` | residual forces of recorded motions, and their derivatives by the sizes |
 //! | `hypothesis.rs` | some candidates fitted, with their evidence |
 //! | `search.rs` | the most probable hypotheses |
-//! | `report.rs` | the report |
-//! | `pictures.rs` | forces over time and over their variables |
+//! | `report.rs` | the report, with forces over time and over their variables |
 
 mod hypothesis;
 mod motions;
-mod pictures;
 mod report;
 mod search;
 
 use appell_recordings::{DataSet, Measured, Part as OfSet, Role};
 use appell_spec::mechanism::ParameterId;
 
-use super::report::{Before, Report, Told};
-use super::{DiagnoseError, Options};
+use super::report::Told;
+use super::{Before, Options, Report, Result};
 use crate::base::BaseError;
 use crate::effects::{Acts, Candidate, EffectModel, Part, driven};
 use motions::Motions;
-use report::HeldOut;
 use search::Search;
 
 /// Smallest number of joints of a robot; mechanisms with fewer are diagnosed by simulation.
@@ -44,8 +41,8 @@ pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
     determines_forces(set, options, FEWEST)
 }
 
-/// Whether the mechanism is a robot, which simulations over windows judge: the same, with fewer joints if it was read from
-/// the file of a robot.
+/// Whether the mechanism is a robot, which simulations over windows judge: the same, with fewer joints if it was read
+/// from the file of a robot.
 pub(super) fn is_of_robot(set: &DataSet, options: &Options) -> bool {
     let fewest = if set.robot.is_some() {
         FEWEST_OF_FILE
@@ -75,7 +72,7 @@ fn determines_forces(set: &DataSet, options: &Options, fewest: usize) -> bool {
 }
 
 /// Estimates of the parameters with a tolerance, from recorded motions.
-pub(super) fn told(set: &DataSet) -> Result<Told, DiagnoseError> {
+pub(super) fn told(set: &DataSet) -> Result<Told> {
     let model = EffectModel::of_forces(&set.spec, Vec::new())?;
     let fit = set.only(OfSet::Fit).bound_to(&model.mechanism);
     let motions = Motions::of(&fit, &model)?;
@@ -85,12 +82,10 @@ pub(super) fn told(set: &DataSet) -> Result<Told, DiagnoseError> {
     let covariance = inverse.ok_or(BaseError::NotFinite)?;
     let deviations = covariance.diagonal().map(f64::sqrt);
     let correlation = covariance.component_div(&(&deviations * deviations.transpose()));
+    let names = &fit.mechanism.parameters;
     let values = places.iter().zip(&moves.values).zip(&deviations);
     let parameters = values.map(|((&place, moved), &std)| Before {
-        name: fit.mechanism.parameters[ParameterId::new(place)]
-            .label
-            .name
-            .clone(),
+        name: names[ParameterId::new(place)].label.name.clone(),
         value: fit.parameters[place].value + moved,
         std,
         spread: 0.0,
@@ -105,7 +100,7 @@ pub(super) fn diagnose(
     model: &EffectModel,
     options: &Options,
     stage: &mut impl FnMut(&'static str),
-) -> Result<Report, DiagnoseError> {
+) -> Result<Report> {
     stage("evaluating the forces of the recorded motions");
     let mut fit = set.only(OfSet::Fit).bound_to(&model.mechanism);
     let mut training = Motions::of(&fit, model)?;
@@ -129,11 +124,9 @@ pub(super) fn diagnose(
     let test = Some(set.only(OfSet::Test)).filter(|test| !test.runs.is_empty());
     let test = test.map(|test| motions(&test)).transpose()?;
     let before = before.map(motions).transpose()?;
-    let held_out = HeldOut {
-        test: test.as_ref(),
-        before: before.as_ref(),
-    };
-    report::report(model, &fit, &found, &training, &held_out, options)
+    let (test, before) = (test.as_ref(), before.as_ref());
+    let search = Search::new(model, &fit, &training);
+    search.report(&found, test, before, options)
 }
 
 /// A data set with other values of some parameters.

@@ -1,11 +1,14 @@
-//! From evidence to calibrated probabilities.
+//! From evidence to calibrated probabilities, with prior probabilities of hypotheses.
 //!
 //! Evidence is overconfident: laws are never exact, disturbances never white, and a library never
 //! complete. Four constants correct for this; they are maximum-likelihood estimates from cases whose cause
 //! was known (`tests/blind/calibrate.py`), half of them diagnosed with a
 //! library that lacks their cause. A tenth of all gaps are assumed to have a cause outside the library.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
+
+use crate::effects::{Candidate, EffectModel};
 
 /// Prior probability that the cause of a gap is outside the library.
 const UNLISTED: f64 = 0.1;
@@ -27,6 +30,13 @@ pub(super) const IMMATERIAL: f64 = 0.02;
 pub(super) const MUCH: f64 = 20.0;
 /// Limit of log Bayes factors, to avoid overflow.
 const MOST: f64 = 300.0;
+
+/// Prior probability that there is no gap.
+pub(super) const NO_GAP: f64 = 0.5;
+/// Largest number of components of a vector whose subsets are evaluated.
+const MOST_COMPONENTS: usize = 6;
+/// Prior probability that an effect is accompanied by another.
+const NOT_ALONE: f64 = 0.2;
 
 /// The remainder of the best hypothesis.
 #[derive(Debug, Clone, Copy)]
@@ -69,30 +79,85 @@ pub(super) fn unlisted_alone(log_bayes_factor: f64) -> f64 {
 }
 
 /// Odds of a gap with a cause outside the library if no effect is found.
-pub(super) fn unlisted_beside_nothing(rest: Rest) -> f64 {
-    UNLISTED * rest.log_bayes_factor.min(MOST).exp()
+pub(super) fn unlisted_beside_nothing(log_bayes_factor: f64) -> f64 {
+    UNLISTED * log_bayes_factor.min(MOST).exp()
+}
+
+/// Names of effects; components of a vector are one effect.
+pub(super) fn names(model: &EffectModel, members: &[usize]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in members.iter().map(|&m| model.candidate(m).name()) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// Logarithm of the prior probability of a hypothesis.
+pub(super) fn prior(model: &EffectModel, members: &[usize]) -> f64 {
+    let names = names(model, members);
+    let of_names = names.iter().map(|name| of_components(model, name));
+    let counts = names.iter().map(|name| counts(model, name));
+    of_count(model, counts.sum()) + of_names.sum::<f64>()
+}
+
+/// Number of effects as which one counts.
+pub(super) fn counts(model: &EffectModel, name: &str) -> usize {
+    let mut candidates = model.candidates.iter();
+    let own = candidates.find(|own| own.name() == name);
+    own.map_or(1, |own| own.counts)
+}
+
+/// The same for any hypothesis with a number of effects.
+pub(super) fn of_count(model: &EffectModel, effects: usize) -> f64 {
+    let candidates = model.candidates.iter();
+    let names: BTreeSet<String> = candidates.map(Candidate::name).collect();
+    let each = (names.len().max(1) as f64).ln();
+    match effects {
+        0 => NO_GAP.ln(),
+        count => (1.0 - NO_GAP).ln() + (count - 1) as f64 * NOT_ALONE.ln() - count as f64 * each,
+    }
+}
+
+/// The prior probability of a vector is shared by its subsets of components; an effect at a group of sites has none.
+pub(super) fn of_components(model: &EffectModel, name: &str) -> f64 {
+    let components = model.candidates.iter();
+    let is_own = |own: &&Candidate| own.is_component && own.name() == name;
+    let components = components.filter(|own| is_own(own) && !own.is_of_group());
+    let choices = (1_u64 << components.count().min(32)) - 1;
+    -(choices.max(1) as f64).ln()
+}
+
+/// Subsets of the components of a vector, up to a size.
+pub(super) fn subsets(components: usize, largest: usize) -> Vec<Vec<usize>> {
+    let some = 1..1_u32 << components.min(MOST_COMPONENTS);
+    some.filter(|some| some.count_ones() as usize <= largest)
+        .map(|some| {
+            (0..components)
+                .filter(|place| some >> place & 1 == 1)
+                .collect()
+        })
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn rest(log_bayes_factor: f64, share: f64) -> Rest {
-        Rest {
+    fn beside_an_effect(log_bayes_factor: f64, share: f64) -> f64 {
+        unlisted_beside_an_effect(Rest {
             log_bayes_factor,
             share,
-        }
-    }
-
-    #[test]
-    fn what_leaves_nothing_is_nearly_as_probable_as_the_library_is_complete() {
-        let odds = unlisted_beside_an_effect(rest(f64::NEG_INFINITY, 0.0));
-        assert!(odds > 0.01 && odds < 0.1, "{odds}");
+        })
     }
 
     #[test]
     fn what_leaves_much_is_not_the_cause() {
-        let odds = |share| unlisted_beside_an_effect(rest(200.0, share));
+        // Without a rest it is nearly as probable as the library is complete.
+        let odds = beside_an_effect(f64::NEG_INFINITY, 0.0);
+        assert!(odds > 0.01 && odds < 0.1, "{odds}");
+        let odds = |share| beside_an_effect(200.0, share);
         assert!(odds(0.5) > 1e3, "{}", odds(0.5));
         assert!(odds(0.001) < 0.2, "a nearly exact law: {}", odds(0.001));
         assert!(odds(0.1) < odds(0.2) && odds(0.2) < odds(0.4));
@@ -100,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_rest_beside_no_effect_is_a_gap() {
-        assert!(unlisted_beside_nothing(rest(-3.0, 1.0)) < 0.01);
-        assert!(unlisted_beside_nothing(rest(10.0, 1.0)) > 1e3);
+        assert!(unlisted_beside_nothing(-3.0) < 0.01);
+        assert!(unlisted_beside_nothing(10.0) > 1e3);
     }
 }

@@ -8,9 +8,7 @@ use appell_spec::units::{self, Unit};
 use serde::{Deserialize, Serialize};
 use toml_edit::{DocumentMut, Item};
 
-use super::bench::Bench;
-use super::evidence::Fitted;
-use super::{ChangeError, DiagnoseError};
+use super::{Bench, ChangeError, Fitted, Result, whole};
 use crate::effects::{Acts, Candidate, EffectModel, ModelError, Part, Term, with_candidates};
 
 /// Changes of a spec.
@@ -106,7 +104,7 @@ impl Changes {
     }
 
     /// The changes under a fitted hypothesis.
-    pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
+    pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self> {
         let members = || fitted.members.iter().map(|&member| bench.candidate(member));
         let beside = bench.stated_beside(&fitted.members);
         let signal_effects = members().chain(beside);
@@ -125,10 +123,7 @@ impl Changes {
                 acts: acts.to_owned(),
                 on: candidate.sites().concat(),
                 output: None,
-                measures: candidate
-                    .acts
-                    .channel()
-                    .and_then(|channel| measured(bench, channel)),
+                measures: (candidate.acts.channel()).and_then(|channel| measured(bench, channel)),
             })
         });
         let shown = members().flat_map(|candidate| shown(bench, candidate));
@@ -152,7 +147,7 @@ impl Changes {
     }
 
     /// The changes of the equations under a hypothesis.
-    pub(super) fn of_equations(of: &Equations<'_>) -> Result<Self, DiagnoseError> {
+    pub(super) fn of_equations(of: &Equations<'_>) -> Result<Self> {
         Ok(Self {
             items: of.items()?,
             inputs: (of.candidates())
@@ -225,7 +220,7 @@ impl Equations<'_> {
     }
 
     /// The items of the members, with the fitted sizes and shapes, each with its standard deviation as tolerance.
-    fn items(&self) -> Result<String, DiagnoseError> {
+    fn items(&self) -> Result<String> {
         let members: Vec<Candidate> = self.candidates().cloned().collect();
         let text = with_candidates("", &members).map_err(ModelError::from)?;
         let info = self.effects.info();
@@ -341,10 +336,8 @@ fn scales(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Refitted> {
             unit: "1".to_owned(),
         })
     };
-    bench
-        .stated_beside(&fitted.members)
-        .filter_map(scale)
-        .collect()
+    let beside = bench.stated_beside(&fitted.members);
+    beside.filter_map(scale).collect()
 }
 
 /// Standard deviation of a value in SI, the prior one at a limit; `None` if it was not free.
@@ -374,11 +367,7 @@ fn rounded(value: f64, deviation: Option<f64>, parameter: &Parameter) -> f64 {
         .map(|std| (value / std).abs())
         .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
         .map_or(DIGITS, |ratio| {
-            let digits = ratio.log10().ceil().clamp(0.0, 12.0);
-            // Twelve at most.
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let digits = digits as usize;
-            digits + 2
+            whole(ratio.log10().ceil().clamp(0.0, 12.0)) + 2
         });
     let number = to_digits(value, digits, &parameter.label.unit);
     let number = parameter.at_least.map_or(number, |limit| number.max(limit));

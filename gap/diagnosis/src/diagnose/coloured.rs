@@ -7,12 +7,11 @@
 
 use appell_estimate::{Disturbance, Estimation, Fit, Free, Setup, Unknown};
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::compare::Comparison;
-use super::evidence::{Evidence, Fitted};
+use super::evidence::Evidence;
 use super::feedback::for_kicks;
 use super::localise::force_unit;
+use super::starts::likeliest;
+use super::{Bench, Comparison, Fitted, Result};
 use crate::effects::Candidate;
 
 /// Number of hypotheses that are fitted again, in addition to the nominal model.
@@ -25,10 +24,7 @@ const SLACK: f64 = 2.0;
 const LARGEST: f64 = 1e3;
 
 /// The comparison with the better of both kinds of process noise for each of these hypotheses.
-pub(super) fn weighed(
-    bench: &Bench<'_>,
-    mut comparison: Comparison,
-) -> Result<Comparison, DiagnoseError> {
+pub(super) fn weighed(bench: &Bench<'_>, mut comparison: Comparison) -> Result<Comparison> {
     let mut compared: Vec<usize> = (0..comparison.fits.len().min(COMPARED)).collect();
     if !compared.contains(&comparison.nominal) {
         compared.push(comparison.nominal);
@@ -61,7 +57,7 @@ pub(super) fn weighed(
 }
 
 /// The gain in log evidence of a hypothesis by coloured process noise.
-fn gain(bench: &Bench<'_>, base: &Fitted) -> Result<f64, DiagnoseError> {
+fn gain(bench: &Bench<'_>, base: &Fitted) -> Result<f64> {
     let mechanism = &bench.effects.mechanism;
     let walking = bench.effects.info().states[..bench.effects.info().speeds]
         .iter()
@@ -81,10 +77,8 @@ fn gain(bench: &Bench<'_>, base: &Fitted) -> Result<f64, DiagnoseError> {
     let walks = walk(&mut setup, &other);
     let estimation = Estimation::new(&setup, &other.recordings)?;
     let start = begun(bench, base, &estimation, &walks)?;
-    let own = all.into_iter();
-    let own: Vec<usize> = own
-        .filter(|&one| !effects.candidates[one].is_measured())
-        .collect();
+    let mut own = all;
+    own.retain(|&one| !effects.candidates[one].is_measured());
     let mut free = other.free(&own, &setup);
     free.extend(walks.iter().map(|walk| walk.free));
     // Without the gain by impulses of inputs, which differs little.
@@ -107,17 +101,14 @@ fn walk(setup: &mut Setup<'_>, bench: &Bench<'_>) -> Vec<Walk> {
     let first = info.state_len() + setup.lagging.len() + lags;
     let candidates = bench.effects.candidates.iter();
     let forces = candidates.filter(|one| one.is_measured());
-    let places: Vec<usize> = forces
-        .flat_map(|one| bench.own(one))
-        .map(|(place, _)| place)
-        .collect();
+    let places = forces.flat_map(|one| bench.own(one));
     let range = |equation: usize| {
         let mut levels = bench.problem.levels.iter();
         let level = levels.find(|level| level.unknown == Unknown::Disturbance(equation));
         level.map_or([0.0, f64::INFINITY], |level| level.range)
     };
     let mut walks = Vec::new();
-    for (index, place) in places.into_iter().enumerate() {
+    for (index, (place, _)) in places.enumerate() {
         let [low, high] = range(index);
         let level = Unknown::Disturbance(setup.disturbances.len());
         setup.drifting.push(place);
@@ -136,28 +127,23 @@ fn begun(
     base: &Fitted,
     estimation: &Estimation<'_>,
     walks: &[Walk],
-) -> Result<Vec<f64>, DiagnoseError> {
+) -> Result<Vec<f64>> {
     let layout = estimation.layout();
     let start = bench.carried_by_name(base, estimation);
-    let mut best: Option<(f64, Vec<f64>)> = None;
-    for rate in RATES {
+    let with_rate = |rate: f64| -> Result<Vec<f64>> {
         let mut values = start.clone();
-        for walk in walks {
-            let level = rate * walk.free.range[1] / LARGEST;
-            values[layout.place(walk.free.unknown)?] = level;
+        for &Walk { free, state } in walks {
+            let level = rate * free.range[1] / LARGEST;
+            values[layout.place(free.unknown)?] = level;
             for run in 0..estimation.recordings().len() {
-                let state = walk.state;
                 values[layout.place(Unknown::Initial { run, state })?] = 0.0;
                 // The standard deviation of its change in one second.
                 values[layout.place(Unknown::Spread { run, state })?] = level;
             }
         }
-        let Ok(likelihood) = estimation.log_likelihood(&values) else {
-            continue;
-        };
-        if best.as_ref().is_none_or(|(most, _)| likelihood > *most) {
-            best = Some((likelihood, values));
-        }
-    }
-    Ok(best.map_or(start, |(_, values)| values))
+        Ok(values)
+    };
+    let all = RATES.into_iter().map(with_rate);
+    let all = all.collect::<Result<Vec<_>, _>>()?;
+    Ok(likeliest(estimation, all).unwrap_or(start))
 }

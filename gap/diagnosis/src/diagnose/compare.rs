@@ -4,17 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use appell_estimate::Fit;
 
-use super::DiagnoseError;
-use super::bench::Bench;
 use super::calibration::{
-    IMMATERIAL, MUCH, Rest, TIED, inexact, tempered, unlisted, unlisted_alone,
-    unlisted_beside_an_effect, unlisted_beside_nothing,
+    IMMATERIAL, MUCH, NO_GAP, Rest, TIED, inexact, names, prior, tempered, unlisted,
+    unlisted_alone, unlisted_beside_an_effect, unlisted_beside_nothing,
 };
-use super::evidence::Fitted;
-use super::prior::{NO_GAP, names, prior};
 use super::search::{Look, SLACK, Search};
 use super::unknown::{Leftover, leftover};
 use super::whiteness::independent;
+use super::{Bench, Fitted, Result};
 
 /// A larger expected gain of a step is due to diverging sensitivities.
 const MOST_PROMISED: f64 = 1e4;
@@ -70,7 +67,7 @@ impl Comparison {
     /// The remainder of the best hypothesis: its evidence, and the share of a law in the gap.
     fn rest(&self, bench: &Bench<'_>) -> Rest {
         let left = self.left.as_ref();
-        let gain = left.map_or(0.0, |left| left.first.gain);
+        let gain = left.map_or(0.0, |left| left.first.gains.gain);
         let explained = self.explained().max(0.0);
         Rest {
             // A law has to explain more than process noise with memory does.
@@ -99,7 +96,7 @@ impl Comparison {
     }
 
     /// Sets the probability that no effect of the library explains the gap.
-    pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<(), DiagnoseError> {
+    pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<()> {
         // Nor can a law close more than what stays.
         let is_closed = bench.is_of_robot
             && bench.is_over_windows()
@@ -128,17 +125,15 @@ impl Comparison {
                 self.stays = self.left_of_gap(bench);
                 unlisted_beside_an_effect(self.rest(bench)) + unlisted(self.stays)
             }
-            (false, 0) => unlisted_beside_nothing(self.rest(bench)),
+            (false, 0) => unlisted_beside_nothing(self.rest(bench).log_bayes_factor),
             // A remainder that is immaterial in simulations does not count.
             (false, _) => {
                 unlisted_beside_an_effect(self.rest(bench)) * (self.stays / IMMATERIAL).min(1.0)
             }
         };
         // The odds are those against all hypotheses with as many members as the best one.
-        let alike = self
-            .fits
-            .iter()
-            .filter(|(own, _)| own.members.len() == members);
+        let is_alike = |(own, _): &&(Fitted, f64)| own.members.len() == members;
+        let alike = self.fits.iter().filter(is_alike);
         let weight = odds * alike.map(|(_, probability)| probability).sum::<f64>();
         self.unknown = weight / (1.0 + weight);
     }
@@ -165,13 +160,9 @@ impl Comparison {
     /// Reduces the probability of `unknown` if its law is immaterial in simulations: `again` is the best hypothesis
     /// over windows. A law that is not found there may be below their resolution, except for a robot: all of it
     /// is driven and measured, and whatever does not show over windows is immaterial.
-    pub(super) fn bear_out_unknown(
-        &mut self,
-        over: &Bench<'_>,
-        again: &Fitted,
-    ) -> Result<(), DiagnoseError> {
+    pub(super) fn bear_out_unknown(&mut self, over: &Bench<'_>, again: &Fitted) -> Result<()> {
         let share = match leftover(over, again)? {
-            Some(seen) => self.stays * (1.0 - over.left(seen.first.gain)),
+            Some(seen) => self.stays * (1.0 - over.left(seen.first.gains.gain)),
             None if over.is_of_robot => 0.0,
             None => return Ok(()),
         };
@@ -224,34 +215,26 @@ impl Comparison {
         nominal: Fitted,
         known: Vec<Fitted>,
         look: impl FnMut(&Fitted) -> Look,
-    ) -> Result<Option<Self>, DiagnoseError> {
+    ) -> Result<Option<Self>> {
         let mut search = Search::new(bench, nominal, known);
         let holds = search.run(look)?;
         holds.then(|| Self::found(bench, search)).transpose()
     }
 
     /// The nominal model and known hypotheses, without a search.
-    pub(super) fn of_known(
-        bench: &Bench<'_>,
-        nominal: Fitted,
-        known: Vec<Fitted>,
-    ) -> Result<Self, DiagnoseError> {
+    pub(super) fn of_known(bench: &Bench<'_>, nominal: Fitted, known: Vec<Fitted>) -> Result<Self> {
         Self::found(bench, Search::new(bench, nominal, known))
     }
 
     /// Compares the nominal model and known hypotheses, and extends the best of them while that improves it.
-    pub(super) fn among(
-        bench: &Bench<'_>,
-        nominal: Fitted,
-        known: Vec<Fitted>,
-    ) -> Result<Self, DiagnoseError> {
+    pub(super) fn among(bench: &Bench<'_>, nominal: Fitted, known: Vec<Fitted>) -> Result<Self> {
         let mut search = Search::new(bench, nominal, known);
         search.better()?;
         Self::found(bench, search)
     }
 
     /// The same after increases of the evidence of some hypotheses by another process noise.
-    pub(super) fn again(self, bench: &Bench<'_>) -> Result<Self, DiagnoseError> {
+    pub(super) fn again(self, bench: &Bench<'_>) -> Result<Self> {
         let best = self.best().members.clone();
         let (unknown, stays, left) = (self.unknown, self.stays, self.left.clone());
         let mut again = self.with(bench, Vec::new())?;
@@ -267,7 +250,7 @@ impl Comparison {
     }
 
     /// The same with further hypotheses that were fitted elsewhere.
-    pub(super) fn with(self, bench: &Bench<'_>, known: Vec<Fitted>) -> Result<Self, DiagnoseError> {
+    pub(super) fn with(self, bench: &Bench<'_>, known: Vec<Fitted>) -> Result<Self> {
         let nominal = self.nominal().clone();
         let own = self.fits.into_iter().map(|(own, _)| own);
         let mut search = Search::new(bench, nominal, own.chain(known));
@@ -277,32 +260,24 @@ impl Comparison {
     }
 
     /// The result of a search.
-    fn found(bench: &Bench<'_>, mut search: Search<'_, '_>) -> Result<Self, DiagnoseError> {
+    fn found(bench: &Bench<'_>, mut search: Search<'_, '_>) -> Result<Self> {
         search.recount_late();
         // Searches that were given up need no word.
         let log = |own: &Fitted| search.log_posterior(own);
-        let best = search
-            .fits
-            .iter()
-            .map(log)
-            .fold(f64::NEG_INFINITY, f64::max);
-        let ended_early = search.fits.iter();
-        let ended_early =
-            ended_early.filter(|own| !own.fit.is_optimum() && log(own) > best - SLACK);
-        let ended_early: Vec<(Vec<usize>, String)> = ended_early
-            .map(|own| (own.members.clone(), ended(&own.fit)))
-            .collect();
+        let best = search.fits.iter().map(log);
+        let best = best.fold(f64::NEG_INFINITY, f64::max);
+        let is_early = |own: &&Fitted| !own.fit.is_optimum() && log(own) > best - SLACK;
+        let ended_early = search.fits.iter().filter(is_early);
+        let ended_early = ended_early.map(|own| (own.members.clone(), ended(&own.fit)));
+        let ended_early: Vec<(Vec<usize>, String)> = ended_early.collect();
         let unfitted = |(members, _): &(Vec<usize>, String)| {
             !search.fits.iter().any(|own| own.members == *members)
         };
         search.failed.retain(unfitted);
         search.failed.extend(ended_early);
         search.fits.retain(Fitted::is_there);
-        let logs: Vec<f64> = search
-            .fits
-            .iter()
-            .map(|f| search.log_posterior(f))
-            .collect();
+        let logs = search.fits.iter().map(|own| search.log_posterior(own));
+        let logs: Vec<f64> = logs.collect();
         let best = (0..logs.len()).max_by(|&a, &b| logs[a].total_cmp(&logs[b]));
         let best = best.unwrap_or(0);
         let independent = if bench.is_over_windows() {
@@ -324,12 +299,9 @@ impl Comparison {
         };
         let weights: Vec<f64> = logs.iter().zip(&search.fits).map(weight).collect();
         let sum: f64 = weights.iter().sum();
-        let mut fits: Vec<(Fitted, f64)> = search
-            .fits
-            .into_iter()
-            .zip(weights)
-            .map(|(fitted, weight)| (fitted, weight / sum))
-            .collect();
+        let fits = search.fits.into_iter().zip(weights);
+        let fits = fits.map(|(fitted, weight)| (fitted, weight / sum));
+        let mut fits: Vec<(Fitted, f64)> = fits.collect();
         // Variants of one effect are one hypothesis.
         let mut of_names: BTreeMap<Vec<String>, f64> = BTreeMap::new();
         for (fitted, weight) in &fits {
@@ -341,9 +313,7 @@ impl Comparison {
         fits.sort_by(|(a, own_a), (b, own_b)| {
             (together(b).total_cmp(&together(a))).then(own_b.total_cmp(own_a))
         });
-        let nominal = fits
-            .iter()
-            .position(|(fitted, _)| fitted.members.is_empty());
+        let nominal = fits.iter().position(|(own, _)| own.members.is_empty());
         let nominal = nominal.unwrap_or(0);
         let likelihood = fits[nominal].0.fit.log_likelihood;
         Ok(Self {

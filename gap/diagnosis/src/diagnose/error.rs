@@ -65,6 +65,9 @@ impl DiagnoseError {
     }
 }
 
+/// The result of a step of a diagnosis.
+pub(super) type Result<T, E = DiagnoseError> = std::result::Result<T, E>;
+
 /// Why a spec cannot be changed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ChangeError {

@@ -6,15 +6,14 @@
 //! thousand. Levels of measurement and process noise are common to all hypotheses; they are not averaged but maximised.
 
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{LN_2, TAU};
 
 use appell_estimate::{Fit, Free, Layout, Unknown};
 use nalgebra::{DMatrix, DVector};
 
-use super::bench::Bench;
-use super::common;
+use super::Bench;
 use super::hardware::LN_1000;
-use crate::effects::Acts;
+use crate::effects::{Acts, Candidate};
 
 /// Sizes below this many standard deviations cannot be distinguished from zero.
 const SMALLEST: f64 = 1.0;
@@ -138,7 +137,7 @@ impl Evidence {
             densities.insert(i, density);
         }
         let groups = groups(bench, members, fit, &densities);
-        let of_groups = groups.iter().map(|places| common::of_group(fit, places));
+        let of_groups = groups.iter().map(|places| of_group(fit, places));
         occam += of_groups.sum::<f64>();
         // A member whose size is zero, at its limit, is not significant.
         for i in own..fit.free.len() {
@@ -172,27 +171,61 @@ fn groups(
     fit: &Fit,
     densities: &BTreeMap<usize, f64>,
 ) -> Vec<Vec<(usize, f64)>> {
-    let mut groups: BTreeMap<String, Option<Vec<(usize, f64)>>> = BTreeMap::new();
     let setup = bench.setup(members);
+    let place = |candidate: &Candidate| {
+        let free = bench.of_signal(candidate.acts, &setup)?;
+        let mut all = fit.free.iter();
+        let place = all.position(|own| own.unknown == free.unknown)?;
+        Some((place, *densities.get(&place)?))
+    };
+    let mut groups: BTreeMap<String, Vec<Option<(usize, f64)>>> = BTreeMap::new();
     for candidate in members.iter().map(|&member| bench.candidate(member)) {
-        if !candidate.is_of_group() || candidate.acts == Acts::Items {
-            continue;
+        if candidate.is_of_group() && candidate.acts != Acts::Items {
+            let group = groups.entry(candidate.name()).or_default();
+            group.push(place(candidate));
         }
-        let free = bench.of_signal(candidate.acts, &setup);
-        let place = free.and_then(|free| {
-            let mut all = fit.free.iter();
-            let place = all.position(|own| own.unknown == free.unknown)?;
-            Some((place, *densities.get(&place)?))
-        });
-        let group = groups
-            .entry(candidate.name())
-            .or_insert_with(|| Some(Vec::new()));
-        *group = group
-            .take()
-            .and_then(|group| Some([group, vec![place?]].concat()));
     }
-    let known = groups.into_values().flatten();
+    // Without one of them a group is none.
+    let known = groups.into_values();
+    let known = known.filter_map(|group| group.into_iter().collect::<Option<Vec<_>>>());
     known.filter(|group| group.len() > 1).collect()
+}
+
+/// Change of the log evidence if the values of a fit with these places and log prior densities may be separate or the
+/// same, with the same probability; none if they are not determined. They are sizes of an effect at a group of sites
+/// that may be one and the same, such as the delay of all drives or of the position and the rate from one encoder.
+fn of_group(fit: &Fit, places: &[(usize, f64)]) -> f64 {
+    let covariance = fit.covariance().ok();
+    let gain = covariance.and_then(|own| of_common(&fit.coordinates, &own, places));
+    gain.map_or(0.0, |gain| {
+        gain.max(0.0) + (-gain.abs()).exp().ln_1p() - LN_2
+    })
+}
+
+/// Log evidence of a common value against separate ones with these places and log prior densities: the ratio of the
+/// posterior and prior densities of their differences at zero (J. M. Dickey, *The weighted likelihood ratio, linear
+/// hypotheses on normal location parameters*, The Annals of Mathematical Statistics 42, 1971).
+fn of_common(
+    values: &DVector<f64>,
+    covariance: &DMatrix<f64>,
+    places: &[(usize, f64)],
+) -> Option<f64> {
+    let (&(first, _), others) = places.split_first()?;
+    let differences = DVector::from_iterator(
+        others.len(),
+        others
+            .iter()
+            .map(|&(other, _)| values[other] - values[first]),
+    );
+    let between = |i: usize, j: usize| {
+        let (i, j) = (others[i].0, others[j].0);
+        covariance[(i, j)] - covariance[(i, first)] - covariance[(first, j)]
+            + covariance[(first, first)]
+    };
+    let factor = DMatrix::from_fn(others.len(), others.len(), between).cholesky()?;
+    let squares = differences.dot(&factor.solve(&differences));
+    let posterior = -0.5 * (others.len() as f64 * TAU.ln() + factor.ln_determinant() + squares);
+    Some(posterior - others.iter().map(|(_, density)| density).sum::<f64>())
 }
 
 /// The smallest size; of an effect at all drives the one that most of them exceed counts, for some may not have it.
@@ -302,4 +335,29 @@ pub(super) fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
 pub(super) fn occam(gain: f64) -> f64 {
     let d = (2.0 * gain).sqrt().max(SMALLEST);
     (2.0 * d * LN_1000).ln() - 0.5 * TAU.ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two values with unit deviations and uniform priors of width w, by the integrals themselves.
+    #[test]
+    fn the_ratio_of_densities_is_that_of_the_integrals() {
+        let (width, covariance) = (20.0_f64, DMatrix::identity(2, 2));
+        for difference in [0.0, 1.0, 4.0] {
+            let values = DVector::from_vec(vec![10.0, 10.0 + difference]);
+            let places = [(0, -width.ln()), (1, -width.ln())];
+            let found = of_common(&values, &covariance, &places).expect("a ratio");
+            let (steps, mut common) = (20_000, 0.0);
+            for step in 0..steps {
+                let x = width * (f64::from(step) + 0.5) / f64::from(steps);
+                let squares = (x - values[0]).powi(2) + (x - values[1]).powi(2);
+                common += (-0.5 * squares).exp() / f64::from(steps);
+            }
+            let separate = TAU / width.powi(2);
+            let expected = (common / separate).ln();
+            assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+        }
+    }
 }

@@ -8,13 +8,9 @@
 use appell_estimate::{Estimation, Recording, Unknown};
 use nalgebra::{DMatrix, DVector};
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::compare::Comparison;
-use super::evidence::Fitted;
-use super::nuisance::moving;
+use super::gram::moving;
 use super::prediction::taken_over;
-use super::report::{Experiment, Limit};
+use super::{Bench, Comparison, Experiment, Fitted, Limit, Result};
 use crate::experiment::Excitation;
 use appell_recordings::{DataSet, Role};
 
@@ -58,7 +54,7 @@ pub(super) fn experiment(
     comparison: &Comparison,
     pair: [&[String]; 2],
     limits: &[Limit],
-) -> Result<Option<Experiment>, DiagnoseError> {
+) -> Result<Option<Experiment>> {
     let fit = |effects: &[String]| {
         let mut fits = comparison.fits.iter().map(|(fitted, _)| fitted);
         fits.find(|fitted| {
@@ -128,10 +124,8 @@ impl<'a> Rig<'a> {
         let set = &bench.set;
         let info = bench.effects.info();
         let stated = |column: &str| {
-            limits
-                .iter()
-                .find(|(own, _)| own == column)
-                .map(|(_, l)| *l)
+            let own = limits.iter().find(|(own, _)| own == column);
+            own.map(|(_, limit)| *limit)
         };
         let mut inputs = vec![None; info.declared_inputs];
         for (column, channel) in set.channels.iter().enumerate() {
@@ -142,10 +136,8 @@ impl<'a> Rig<'a> {
         }
         let measured = set.measured(info);
         let channels = measured.iter().map(|(channel, _)| {
-            let column = set
-                .channels
-                .iter()
-                .position(|own| own.column == channel.column);
+            let mut columns = set.channels.iter();
+            let column = columns.position(|own| own.column == channel.column);
             let recorded = column.and_then(|column| range(set, column));
             let wide = recorded.map(|[low, high]| {
                 let room = ROOM * (high - low);
@@ -154,22 +146,14 @@ impl<'a> Rig<'a> {
             let all = [f64::NEG_INFINITY, f64::INFINITY];
             stated(&channel.column).or(wide).unwrap_or(all)
         });
-        let spans: Vec<[f64; 2]> = bench
-            .recordings
-            .iter()
-            .map(|run| {
-                let times = run.times();
-                let span = times[times.len() - 1] - times[0];
-                [span, span / (times.len() - 1) as f64]
-            })
-            .collect();
-        let longest = spans.iter().fold(0.0_f64, |most, span| most.max(span[0]));
-        let finest = spans
-            .iter()
-            .fold(f64::INFINITY, |least, span| least.min(span[1]));
+        let durations = bench.recordings.iter().map(|run| {
+            let times = run.times();
+            times[times.len() - 1] - times[0]
+        });
+        let longest = durations.fold(0.0_f64, f64::max);
         Self {
             bench,
-            step: finest.max(longest.min(LONGEST) / MOST_ROWS),
+            step: bench.step.max(longest.min(LONGEST) / MOST_ROWS),
             duration: longest.min(LONGEST),
             inputs,
             channels: channels.collect(),
@@ -177,7 +161,7 @@ impl<'a> Rig<'a> {
     }
 
     /// The recording without noise that a hypothesis predicts; `None` if the motion leaves its limits.
-    fn made(&self, truth: &Fitted, signal: TestSignal) -> Result<Option<Recording>, DiagnoseError> {
+    fn made(&self, truth: &Fitted, signal: TestSignal) -> Result<Option<Recording>> {
         let samples = signal.shape.samples(self.duration, self.step);
         let (rows, columns, channels) = (samples.len(), self.inputs.len(), self.channels.len());
         let mut inputs = vec![0.0; rows * columns];
@@ -194,7 +178,14 @@ impl<'a> Rig<'a> {
         let setup = self.bench.setup(&truth.members);
         let estimation = Estimation::new(&setup, &blank)?;
         let mut values = taken_over(self.bench, truth, &estimation)?;
-        Self::rest(truth, &estimation, &mut values)?;
+        // The positions at the beginning of the first run, at rest.
+        let info = setup.model.info();
+        for state in 0..info.state_len() {
+            let unknown = Unknown::Initial { run: 0, state };
+            let begun = truth.fit.values[truth.layout.place(unknown)?];
+            let at = if state < info.speeds { 0.0 } else { begun };
+            values[estimation.layout().place(unknown)?] = at;
+        }
         let mut shown = vec![f64::NAN; rows * channels];
         for one in estimation.predictions(&values, 0, f64::INFINITY, &[0])? {
             let value = -one.residual;
@@ -205,22 +196,6 @@ impl<'a> Rig<'a> {
             shown[one.row * channels + one.channel] = value;
         }
         Ok(Some(blank[0].with_measurements(shown)?))
-    }
-
-    /// Initial values: the positions at the beginning of the first run, at rest.
-    fn rest(
-        truth: &Fitted,
-        estimation: &Estimation<'_>,
-        values: &mut [f64],
-    ) -> Result<(), DiagnoseError> {
-        let info = estimation.setup().model.info();
-        for state in 0..info.state_len() {
-            let unknown = Unknown::Initial { run: 0, state };
-            let begun = truth.fit.values[truth.layout.place(unknown)?];
-            let at = if state < info.speeds { 0.0 } else { begun };
-            values[estimation.layout().place(unknown)?] = at;
-        }
-        Ok(())
     }
 
     /// The inputs that can be commanded.
@@ -248,11 +223,7 @@ fn range(set: &DataSet, column: usize) -> Option<[f64; 2]> {
 }
 
 /// Separation of a hypothesis from the recording of another one after its parameters have adapted.
-fn distance(
-    bench: &Bench<'_>,
-    rival: &Fitted,
-    recording: &Recording,
-) -> Result<f64, DiagnoseError> {
+fn distance(bench: &Bench<'_>, rival: &Fitted, recording: &Recording) -> Result<f64> {
     let recordings = [recording.clone()];
     let setup = bench.setup(&rival.members);
     let estimation = Estimation::new(&setup, &recordings)?;

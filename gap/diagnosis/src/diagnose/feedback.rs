@@ -10,8 +10,7 @@ use appell_estimate::{Along, EstimateError, Estimation, Fit, Recording, Shapes};
 use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 
-use super::gram::{Gram, Normal, whitened};
-use super::nuisance::{moving, priors};
+use super::gram::{Gram, Normal, moving, priors, whitened};
 
 /// Number of earlier samples from which a command is predicted.
 const LAGS: usize = 4;
@@ -25,53 +24,41 @@ const PREDICTED: f64 = 1e-3;
 /// prediction of a feedback input.
 const SURE: f64 = 7.0;
 
-/// Innovations of feedback inputs: for each run and row, a value for each such input.
+/// Innovations of feedback inputs.
 #[derive(Debug, Clone, Default)]
 pub(super) struct InputInnovations {
-    /// Number of feedback inputs.
-    pub(super) count: usize,
     /// Whether an input depends on the measurements, recorded or not.
     pub(super) is_closed: bool,
     /// For each run its times.
     times: Vec<Vec<f64>>,
-    /// For each run and row.
+    /// For each feedback input, run and row.
     values: Vec<Vec<Vec<f64>>>,
 }
 
 impl InputInnovations {
     pub(super) fn of(recordings: &[Recording]) -> Self {
         let inputs = recordings.first().map_or(0, Recording::input_len);
-        let mut input_innovations = Self {
-            count: 0,
+        let mut all = Self {
             is_closed: false,
             times: recordings.iter().map(|run| run.times().to_vec()).collect(),
-            values: recordings
-                .iter()
-                .map(|run| vec![Vec::new(); run.times().len()])
-                .collect(),
+            values: Vec::new(),
         };
-        for input in 0..inputs {
-            let Some(feedback) = feedback(recordings, input) else {
-                continue;
-            };
-            input_innovations.is_closed = true;
-            let Some(innovation) = feedback.innovation else {
-                continue;
-            };
-            input_innovations.count += 1;
-            for (rows, own) in input_innovations.values.iter_mut().zip(innovation) {
-                for (row, own) in rows.iter_mut().zip(own) {
-                    row.push(own);
-                }
-            }
+        for feedback in (0..inputs).filter_map(|input| feedback(recordings, input)) {
+            all.is_closed = true;
+            all.values.extend(feedback.innovation);
         }
-        input_innovations
+        all
+    }
+
+    /// Number of feedback inputs.
+    pub(super) fn count(&self) -> usize {
+        self.values.len()
     }
 
     /// Calls a function with the impulses as additional columns, or with `None` without feedback inputs.
     pub(super) fn with_kicks<T>(&self, call: impl FnOnce(Option<Shapes<'_>>) -> T) -> T {
         let kicks = |run: usize, at: At<'_>, to: &mut [f64]| self.kicks(run, at.t, to);
-        call((self.count > 0).then_some(Shapes {
+        call((self.count() > 0).then_some(Shapes {
             along: Along::Disturbances,
             count: self.kick_count(),
             values: &kicks,
@@ -80,7 +67,7 @@ impl InputInnovations {
 
     /// Number of impulses on each equation.
     pub(super) fn kick_count(&self) -> usize {
-        self.count * KICKS
+        self.count() * KICKS
     }
 
     /// Writes the impulses at a time of a run: the last innovations of each feedback input.
@@ -88,8 +75,8 @@ impl InputInnovations {
         let row = self.times[run].partition_point(|&own| own <= t);
         for (place, to) in to.iter_mut().enumerate() {
             let (input, back) = (place / KICKS, place % KICKS + 1);
-            let innovation = row.checked_sub(back).map(|row| &self.values[run][row]);
-            *to = innovation.map_or(0.0, |innovation| innovation[input]);
+            let row = row.checked_sub(back);
+            *to = row.map_or(0.0, |row| self.values[input][run][row]);
         }
     }
 }
@@ -101,7 +88,7 @@ pub(super) fn for_kicks(
     estimation: &Estimation<'_>,
     fit: &Fit,
 ) -> Result<f64, EstimateError> {
-    if own.count == 0 {
+    if own.count() == 0 {
         return Ok(0.0);
     }
     let directions = moving(fit);
@@ -210,10 +197,8 @@ fn feedback(recordings: &[Recording], input: usize) -> Option<Feedback> {
     if is_small(rest.norm_squared()) || !is_told(after, then) {
         return is_closed.then_some(Feedback { innovation: None });
     }
-    let mut all: Vec<Vec<f64>> = recordings
-        .iter()
-        .map(|run| vec![0.0; run.times().len()])
-        .collect();
+    let all = recordings.iter().map(|run| vec![0.0; run.times().len()]);
+    let mut all: Vec<Vec<f64>> = all.collect();
     for (&(run, row), &rest) in rows.iter().zip(rest.iter()) {
         all[run][row] = rest;
     }
@@ -276,9 +261,9 @@ mod tests {
     #[test]
     fn a_command_that_knows_the_motion_is_told_from_one_that_does_not() {
         let open = InputInnovations::of(&[recording(false)]);
-        assert!(open.count == 0 && !open.is_closed);
+        assert!(open.count() == 0 && !open.is_closed);
         let told = InputInnovations::of(&[recording(true)]);
-        assert!(told.count == 1 && told.is_closed);
+        assert!(told.count() == 1 && told.is_closed);
         let mut kicks = [f64::NAN; KICKS];
         told.kicks(0, 5.005, &mut kicks);
         assert!(kicks.iter().all(|kick| kick.is_finite() && *kick != 0.0));

@@ -6,14 +6,10 @@
 use appell_estimate::Estimation;
 use appell_runtime::model::ModelInfo;
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::compare::Comparison;
-use super::force_history::{median, together};
-use super::forces::{Forces, mean_missing};
+use super::force_history::{Forces, mean_missing, median, together};
 use super::localise::force_unit;
 use super::prediction::followed;
-use super::report::{ForceLaw, ShareOf, Where};
+use super::{Bench, Comparison, ForceLaw, Result, Where};
 use crate::effects::EffectModel;
 
 /// Largest number of steps that are evaluated.
@@ -42,30 +38,30 @@ pub(super) fn force_laws(
     bench: &Bench<'_>,
     comparison: &Comparison,
     place: &Where,
-) -> Result<(Option<ForceLaw>, Vec<[ForceLaw; 2]>), DiagnoseError> {
-    let info = bench.effects.info();
-    let Some(first) = place.equations.first() else {
+) -> Result<(Option<ForceLaw>, Vec<[ForceLaw; 2]>)> {
+    if place.equations.is_empty() {
         return Ok((None, Vec::new()));
-    };
-    let names = info.states[..info.speeds].iter();
-    let Some(equation) = names.map(|s| &s.name).position(|name| *name == first.name) else {
-        return Ok((None, Vec::new()));
-    };
+    }
     let steps = steps(bench, comparison)?;
     let joints = if bench.is_of_robot {
         over_rates_and_positions(bench.effects, &steps)
     } else {
         Vec::new()
     };
-    Ok((over_its_variable(info, first, &steps[equation]), joints))
+    Ok((over_its_variable(bench.effects, place, &steps), joints))
 }
 
-/// The force over the variable that explains most of the law, or of the force itself without a law.
+/// The force in the equation with the greatest share over the variable that explains most of the law, or of the force
+/// itself without a law.
 pub(super) fn over_its_variable(
-    info: &ModelInfo,
-    first: &ShareOf,
-    steps: &[Step],
+    model: &EffectModel,
+    place: &Where,
+    steps: &[Vec<Step>],
 ) -> Option<ForceLaw> {
+    let info = model.info();
+    let first = place.equations.first()?;
+    let mut speeds = info.states[..info.speeds].iter();
+    let steps = &steps[speeds.position(|own| own.name == first.name)?];
     let variables = info.state_len() + info.inputs.len();
     let has_law = steps.iter().any(|step| step.law != 0.0);
     let target = |step: &Step| if has_law { step.law } else { step.force };
@@ -136,7 +132,7 @@ fn over(
 }
 
 /// The steps of all runs, by equation.
-fn steps(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Vec<Step>>, DiagnoseError> {
+fn steps(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Vec<Step>>> {
     let (nominal, best) = (comparison.nominal(), comparison.best());
     let setup = bench.setup(&nominal.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;

@@ -3,11 +3,8 @@
 use appell_estimate::{Estimation, Shapes};
 use appell_runtime::model::At;
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
-use super::report::Form;
-use super::unknown::{Dependence, LawGain, TermScores, Unnamed, term_scores};
+use super::unknown::{Dependence, Unnamed, term_scores};
+use super::{Bench, Fitted, Form, Result};
 
 /// Largest number of reported forms.
 const TOLD: usize = 3;
@@ -22,15 +19,13 @@ const FINER: u32 = 12;
 /// Width of a step relative to the range.
 const STEP: f64 = 0.01;
 
-/// One function of the variable.
-struct Term {
-    of: Box<dyn Fn(f64) -> f64 + Sync>,
-}
+/// A function of the variable.
+type Function = Box<dyn Fn(f64) -> f64 + Sync>;
 
-/// A form with the indices of its terms, and the number of forms of its kind.
+/// A sum of functions with coefficients, and the number of forms of its kind.
 struct Trial {
     text: String,
-    terms: Vec<usize>,
+    functions: Vec<Function>,
     alike: usize,
     /// Frequency of a harmonic in radians per SI unit of the variable.
     rate: Option<f64>,
@@ -42,9 +37,9 @@ pub(super) fn forms(
     base: &Fitted,
     dependence: Dependence<'_>,
     law: &Unnamed,
-) -> Result<Vec<Form>, DiagnoseError> {
-    let (terms, tried) = trials(bench, dependence);
-    let mut forms = scored(bench, base, dependence, law, &terms, tried)?;
+) -> Result<Vec<Form>> {
+    let tried = trials(bench, dependence);
+    let mut forms = scored(bench, base, dependence, law, tried)?;
     // The frequencies of harmonics are a grid: the best one is refined between its neighbours.
     let best = forms.iter().find_map(|(rate, _)| *rate);
     if let Some(rate) = best {
@@ -53,9 +48,9 @@ pub(super) fn forms(
             let beside = (f64::from(place) - f64::from(FINER)) / f64::from(FINER);
             rate + beside * step
         });
-        let finer: Vec<f64> = finer.filter(|rate| *rate > 0.0).collect();
-        let (terms, tried) = waves(bench, dependence, &finer);
-        let finer = scored(bench, base, dependence, law, &terms, tried)?;
+        let finer = finer.filter(|rate| *rate > 0.0);
+        let tried = waves(bench, dependence, finer).collect();
+        let finer = scored(bench, base, dependence, law, tried)?;
         let place = forms.iter().position(|(own, _)| *own == best);
         let better = finer.into_iter().next().zip(place);
         if let Some((better, place)) = better {
@@ -74,25 +69,25 @@ fn scored(
     base: &Fitted,
     dependence: Dependence<'_>,
     law: &Unnamed,
-    terms: &[Term],
     trials: Vec<Trial>,
-) -> Result<Vec<(Option<f64>, Form)>, DiagnoseError> {
+) -> Result<Vec<(Option<f64>, Form)>> {
     let setup = bench.setup(&base.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let functions = || trials.iter().flat_map(|trial| &trial.functions);
     let write = |run: usize, at: At<'_>, values: &mut [f64]| {
         let x = dependence.variable(bench, setup.model, run, at);
         let factor = dependence.factor(bench, setup.model, at);
-        for (value, term) in values.iter_mut().zip(terms) {
+        for (value, function) in values.iter_mut().zip(functions()) {
             *value = if x.is_nan() {
                 0.0
             } else {
-                factor * (term.of)(x)
+                factor * function(x)
             };
         }
     };
     let shapes = Shapes {
         along: law.along,
-        count: terms.len(),
+        count: functions().count(),
         values: &write,
     };
     let scores = term_scores(bench, &estimation, base, shapes, &[shapes.count])?;
@@ -100,141 +95,104 @@ fn scored(
     let Some((_, scores)) = scores.find(|(place, _)| *place == law.place) else {
         return Ok(Vec::new());
     };
-    let mut forms: Vec<(Option<f64>, Form)> = trials
-        .into_iter()
-        .filter_map(|trial| Some((trial.rate, judged(trial, &scores, law.gain)?)))
-        .filter(|(_, form)| form.share > NEAR)
-        .collect();
+    let written = dependence.written(bench).and_then(|own| own.factor);
+    let mut forms: Vec<(Option<f64>, Form)> = Vec::new();
+    let mut first = 0;
+    for trial in trials {
+        let terms = first..first + trial.functions.len();
+        first = terms.end;
+        let Some(own) = scores.of(&terms.collect::<Vec<_>>()) else {
+            continue;
+        };
+        let share = own.gain / law.gains.gain.max(f64::MIN_POSITIVE);
+        if share > NEAR {
+            let form = Form {
+                text: match &written {
+                    Some(factor) => format!("{factor}*{}", trial.text),
+                    None => trial.text,
+                },
+                share,
+                log_bayes_factor: own.log_bayes_factor - (trial.alike as f64).ln(),
+            };
+            forms.push((trial.rate, form));
+        }
+    }
     forms.sort_by(|(_, a), (_, b)| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
     Ok(forms)
 }
 
-fn judged(trial: Trial, scores: &TermScores, most: f64) -> Option<Form> {
-    let LawGain {
-        gain,
-        log_bayes_factor,
-        ..
-    } = scores.of(&trial.terms)?;
-    Some(Form {
-        text: trial.text,
-        share: gain / most.max(f64::MIN_POSITIVE),
-        log_bayes_factor: log_bayes_factor - (trial.alike as f64).ln(),
-    })
-}
-
-/// All forms of a variable, and the functions of which they consist.
-fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Trial>) {
-    let (name, written) = dependence.letters(bench);
+/// All forms of a variable.
+fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> Vec<Trial> {
+    let (name, _, scale) = dependence.letters(bench);
     let (low, high) = dependence.range;
-    let (range, scale) = (high - low, dependence.unit(bench).1);
+    let range = high - low;
     let width = STEP * range;
-    let mut terms: Vec<Term> = Vec::new();
     let mut trials: Vec<Trial> = Vec::new();
-    let mut add = |text: String, alike: usize, functions: Vec<Box<dyn Fn(f64) -> f64 + Sync>>| {
-        let first = terms.len();
-        terms.extend(functions.into_iter().map(|of| Term { of }));
-        let text = match &written {
-            Some(factor) => format!("{factor}*{text}"),
-            None => text,
-        };
+    let mut add = |text: String, alike: usize, function: Function| {
         trials.push(Trial {
             text,
-            terms: (first..terms.len()).collect(),
+            functions: vec![function],
             alike,
             rate: None,
         });
     };
     let unit = range.abs().max(f64::MIN_POSITIVE);
-    add(name.clone(), 1, vec![Box::new(move |x| x / unit)]);
+    add(name.clone(), 1, Box::new(move |x| x / unit));
     add(
         format!("{name}^2"),
         1,
-        vec![Box::new(move |x| (x / unit).powi(2))],
+        Box::new(move |x| (x / unit).powi(2)),
     );
     add(
         format!("{name}^3"),
         1,
-        vec![Box::new(move |x| (x / unit).powi(3))],
+        Box::new(move |x| (x / unit).powi(3)),
     );
     if low < 0.0 && high > 0.0 {
-        add(
-            format!("sign({name})"),
-            1,
-            vec![Box::new(move |x| (x / width).tanh())],
-        );
-        add(format!("abs({name})"), 1, vec![Box::new(f64::abs)]);
-        add(
-            format!("{name}*abs({name})"),
-            1,
-            vec![Box::new(move |x| x / unit * (x / unit).abs())],
-        );
+        let sign = Box::new(move |x: f64| (x / width).tanh());
+        add(format!("sign({name})"), 1, sign);
+        add(format!("abs({name})"), 1, Box::new(f64::abs));
+        let square = Box::new(move |x: f64| x / unit * (x / unit).abs());
+        add(format!("{name}*abs({name})"), 1, square);
     }
     for place in 1..=PLACES {
         let part = place as f64 / (PLACES + 1) as f64;
         let corner = low + part * range;
-        let shown = format!("{:.3e}", corner / scale);
-        let shown = shown
-            .parse::<f64>()
-            .map_or(shown, |value| value.to_string());
-        add(
-            format!("step at {name} = {shown}"),
-            PLACES,
-            vec![Box::new(move |x| ((x - corner) / width).tanh())],
-        );
-        add(
-            format!("max({name} - {shown}, 0)"),
-            PLACES,
-            vec![Box::new(move |x| (x - corner).max(0.0) / unit)],
-        );
+        let shown = rounded(corner / scale, 3);
+        let step = Box::new(move |x: f64| ((x - corner) / width).tanh());
+        add(format!("step at {name} = {shown}"), PLACES, step);
+        let ramp = Box::new(move |x: f64| (x - corner).max(0.0) / unit);
+        add(format!("max({name} - {shown}, 0)"), PLACES, ramp);
         let length = part * range;
-        let shown = format!("{:.2e}", length / scale);
-        let shown = shown
-            .parse::<f64>()
-            .map_or(shown, |value| value.to_string());
-        add(
-            format!("exp(-{name}/{shown})"),
-            PLACES,
-            vec![Box::new(move |x| (-(x - low) / length).exp())],
-        );
+        let decay = Box::new(move |x: f64| (-(x - low) / length).exp());
+        let shown = rounded(length / scale, 2);
+        add(format!("exp(-{name}/{shown})"), PLACES, decay);
     }
-    let rates: Vec<f64> = (0..WAVES).map(|wave| dependence.rate(wave)).collect();
-    let (more, waves) = waves(bench, dependence, &rates);
-    let first = terms.len();
-    trials.extend(waves.into_iter().map(|wave| Trial {
-        terms: wave.terms.iter().map(|term| first + term).collect(),
-        ..wave
-    }));
-    terms.extend(more);
-    (terms, trials)
+    let rates = (0..WAVES).map(|wave| dependence.rate(wave));
+    trials.extend(waves(bench, dependence, rates));
+    trials
 }
 
 /// A sine with a free phase for each of these frequencies.
-fn waves(bench: &Bench<'_>, dependence: Dependence<'_>, rates: &[f64]) -> (Vec<Term>, Vec<Trial>) {
-    let (name, written) = dependence.letters(bench);
-    let scale = dependence.unit(bench).1;
-    let (mut terms, mut trials) = (Vec::new(), Vec::new());
-    for &rate in rates {
-        let shown = format!("{:.3e}", rate * scale);
-        let shown = (shown.parse::<f64>()).map_or(shown, |value| value.to_string());
-        let text = format!("sin({shown}*{name} + phase)");
-        let first = terms.len();
-        terms.extend([
-            Term {
-                of: Box::new(move |x| (rate * x).sin()),
-            },
-            Term {
-                of: Box::new(move |x| (rate * x).cos()),
-            },
-        ]);
-        trials.push(Trial {
-            text: match &written {
-                Some(factor) => format!("{factor}*{text}"),
-                None => text,
-            },
-            terms: vec![first, first + 1],
-            alike: WAVES,
-            rate: Some(rate),
-        });
-    }
-    (terms, trials)
+fn waves(
+    bench: &Bench<'_>,
+    dependence: Dependence<'_>,
+    rates: impl Iterator<Item = f64>,
+) -> impl Iterator<Item = Trial> {
+    let (name, _, scale) = dependence.letters(bench);
+    rates.map(move |rate| Trial {
+        text: format!("sin({}*{name} + phase)", rounded(rate * scale, 3)),
+        functions: vec![
+            Box::new(move |x| (rate * x).sin()),
+            Box::new(move |x| (rate * x).cos()),
+        ],
+        alike: WAVES,
+        rate: Some(rate),
+    })
+}
+
+/// A number with so many digits after the first.
+fn rounded(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$e}");
+    text.parse::<f64>().map_or(text, |value| value.to_string())
 }

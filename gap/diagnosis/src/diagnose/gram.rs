@@ -1,9 +1,10 @@
-//! Normal equations of some columns with nuisance parameters eliminated, and the gains of subsets of columns.
+//! Normal equations of some columns with nuisance parameters eliminated, which have priors, and the gains of subsets of
+//! columns.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use appell_estimate::Tangent;
+use appell_estimate::{Direction, Fit, Free, Tangent};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Relative norm of the part orthogonal to the nuisance columns below which a column is dependent on them.
@@ -54,9 +55,70 @@ impl Normal {
             self.squares[(order[i], order[j])]
         });
         let scores = DVector::from_fn(order.len(), |i, _| self.scores[order[i]]);
-        let log_likelihood = -0.5 * (self.scales + self.square);
-        Gram::beside(0..first.len(), &squares, &scores, log_likelihood)
+        let (free, own) = (first.len(), order.len() - first.len());
+        let whole = squares.view((free, free), (own, own)).into_owned();
+        let mut rest = Gram {
+            scores: scores.rows(free, own).into_owned(),
+            is_imitated: vec![false; own],
+            squares: whole.clone(),
+            log_likelihood: -0.5 * (self.scales + self.square),
+        };
+        if free > 0 {
+            let size = DVector::from_fn(free, |i, _| {
+                squares[(i, i)].sqrt().max(f64::MIN_POSITIVE).recip()
+            });
+            let mut own_squares =
+                DMatrix::from_fn(free, free, |i, j| size[i] * squares[(i, j)] * size[j]);
+            for i in 0..free {
+                own_squares[(i, i)] += RIDGE;
+            }
+            if let Some(factor) = own_squares.cholesky() {
+                let mixed = DMatrix::from_fn(free, own, |i, j| size[i] * squares[(i, free + j)]);
+                let of_own = DVector::from_fn(free, |i, _| size[i] * scores[i]);
+                let along = factor.l().solve_lower_triangular(&mixed);
+                let told = factor.l().solve_lower_triangular(&of_own);
+                if let (Some(along), Some(told)) = (along, told) {
+                    rest.squares -= along.tr_mul(&along);
+                    rest.scores -= along.tr_mul(&told);
+                    rest.log_likelihood += 0.5 * told.norm_squared();
+                }
+            }
+        }
+        for i in 0..own {
+            let left = rest.squares[(i, i)];
+            rest.is_imitated[i] = left.is_nan() || left <= LEFT * LEFT * whole[(i, i)];
+        }
+        rest
     }
+}
+
+/// The free values of a hypothesis that affect the predicted mean.
+pub(super) fn moving(fit: &Fit) -> Vec<Direction> {
+    let free = fit.free.iter();
+    free.map(|free| Direction::Value(free.unknown))
+        .filter(|direction| moves_the_mean(*direction))
+        .collect()
+}
+
+/// Their priors.
+pub(super) fn priors(fit: &Fit) -> Vec<Option<[f64; 2]>> {
+    let free = fit.free.iter().zip(&fit.coordinates);
+    free.filter(|(own, _)| moves_the_mean(Direction::Value(own.unknown)))
+        .map(|(own, coordinate)| known(own, *coordinate))
+        .collect()
+}
+
+/// The deviation of a coordinate from its prior mean, in prior standard deviations, and its derivative by the value:
+/// sensitivities are by values, priors of coordinates.
+pub(super) fn known(free: &Free, coordinate: f64) -> Option<[f64; 2]> {
+    let [expected, deviation] = free.prior?;
+    let stretch = free.stretch(free.to_value(coordinate));
+    let off = coordinate - free.to_coordinate(expected);
+    Some([off / deviation, (deviation * stretch).recip()])
+}
+
+pub(super) fn moves_the_mean(direction: Direction) -> bool {
+    !matches!(direction, Direction::Value(unknown) if unknown.is_level())
 }
 
 /// The whitened innovations.
@@ -218,49 +280,6 @@ pub(super) struct Solved {
 }
 
 impl Gram {
-    /// Eliminates the first columns from all others.
-    pub(super) fn beside(
-        first: Range<usize>,
-        squares: &DMatrix<f64>,
-        scores: &DVector<f64>,
-        log_likelihood: f64,
-    ) -> Self {
-        let (free, own) = (first.len(), squares.ncols() - first.len());
-        let whole = squares.view((free, free), (own, own)).into_owned();
-        let mut rest = Self {
-            scores: scores.rows(free, own).into_owned(),
-            is_imitated: vec![false; own],
-            squares: whole.clone(),
-            log_likelihood,
-        };
-        if free > 0 {
-            let size = DVector::from_fn(free, |i, _| {
-                squares[(i, i)].sqrt().max(f64::MIN_POSITIVE).recip()
-            });
-            let mut own_squares =
-                DMatrix::from_fn(free, free, |i, j| size[i] * squares[(i, j)] * size[j]);
-            for i in 0..free {
-                own_squares[(i, i)] += RIDGE;
-            }
-            if let Some(factor) = own_squares.cholesky() {
-                let mixed = DMatrix::from_fn(free, own, |i, j| size[i] * squares[(i, free + j)]);
-                let of_own = DVector::from_fn(free, |i, _| size[i] * scores[i]);
-                let along = factor.l().solve_lower_triangular(&mixed);
-                let told = factor.l().solve_lower_triangular(&of_own);
-                if let (Some(along), Some(told)) = (along, told) {
-                    rest.squares -= along.tr_mul(&along);
-                    rest.scores -= along.tr_mul(&told);
-                    rest.log_likelihood += 0.5 * told.norm_squared();
-                }
-            }
-        }
-        for i in 0..own {
-            let left = rest.squares[(i, i)];
-            rest.is_imitated[i] = left.is_nan() || left <= LEFT * LEFT * whole[(i, i)];
-        }
-        rest
-    }
-
     /// The best sizes of some columns; `None` if one depends linearly on the nuisance columns or on the others.
     pub(super) fn solved(&self, columns: &[usize]) -> Option<Solved> {
         let n = columns.len();

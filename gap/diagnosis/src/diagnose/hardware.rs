@@ -39,10 +39,8 @@ impl Hardware {
     /// `wanted` are the values with tolerances.
     pub(super) fn of(effects: &EffectModel, wanted: &[Free]) -> Self {
         let info = effects.info();
-        let of_pure = info
-            .parameters
-            .iter()
-            .map(|own| if own.unit == "1" { PURE } else { f64::INFINITY });
+        let scale = |pure: bool| if pure { PURE } else { f64::INFINITY };
+        let of_pure = info.parameters.iter().map(|own| scale(own.unit == "1"));
         let mut alike: Vec<f64> = of_pure.collect();
         // The offset of an encoder changes the mass matrix, but is no inertia.
         let may_add = |own: &&Candidate| own.family != Family::Sensor;

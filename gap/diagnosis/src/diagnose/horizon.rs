@@ -9,20 +9,16 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use super::DiagnoseError;
-use super::bench::Bench;
+use super::bench::SHARES;
 use super::calibration::{IMMATERIAL, TIED};
 use super::coloured;
-use super::compare::Comparison;
-use super::evidence::Fitted;
-use super::report::Window;
 use super::scales::{deviation, rates};
-use super::screen::Screen;
+use super::screen::{Screened, screen};
 use super::search::Look;
 use super::unknown::leftover;
-use crate::effects::Acts;
+use super::{Bench, Comparison, DiagnoseError, Fitted, Result, Window};
 use appell_estimate::Unknown;
-use appell_recordings::{DataSet, Measured, Role};
+use appell_recordings::{DataSet, Measured, Role, Run};
 
 /// Number of windows, spread over all runs.
 const WINDOWS: usize = 40;
@@ -56,14 +52,14 @@ const EVENTS: f64 = 0.95;
 /// The hypotheses, with the estimation problem by which they are ranked.
 pub(super) struct Judged<'a> {
     pub(super) bench: Bench<'a>,
-    pub(super) screen: Screen,
+    pub(super) screen: Vec<Screened>,
     pub(super) comparison: Comparison,
     /// Windows of the training runs that the best hypothesis does not predict, once they are known.
     pub(super) outside: Option<Vec<Window>>,
 }
 
 impl<'a> Judged<'a> {
-    fn of(bench: Bench<'a>, screen: Screen, comparison: Comparison) -> Self {
+    fn of(bench: Bench<'a>, screen: Vec<Screened>, comparison: Comparison) -> Self {
         Self {
             bench,
             screen,
@@ -74,7 +70,7 @@ impl<'a> Judged<'a> {
 
     /// One-step predictions that find a gap, with coloured process noise as well. Over windows there is no process
     /// noise.
-    pub(super) fn with_coloured_noise(mut self) -> Result<Self, DiagnoseError> {
+    pub(super) fn with_coloured_noise(mut self) -> Result<Self> {
         if !self.bench.is_over_windows() && !self.comparison.is_null() {
             self.comparison = coloured::weighed(&self.bench, self.comparison)?;
             self.outside = None;
@@ -95,11 +91,11 @@ impl<'a> Judged<'a> {
 /// The ranking by one-step predictions if it is validated by simulations over windows, otherwise that by these.
 pub(super) fn judged<'a>(
     bench: Bench<'a>,
-    screen: Screen,
+    screen: Vec<Screened>,
     nominal: Fitted,
     over: Bench<'a>,
     stage: &mut impl FnMut(&'static str),
-) -> Result<Judged<'a>, DiagnoseError> {
+) -> Result<Judged<'a>> {
     let mut seen = Seen {
         over: &over,
         bench: &bench,
@@ -129,8 +125,8 @@ pub(super) fn judged<'a>(
         }
         found
     };
-    // Without an effect over its windows a robot is judged by the innovations of the nominal model, and so is a closed loop
-    // whose windows show nothing but imitations of disturbances.
+    // Without an effect over its windows a robot is judged by the innovations of the nominal model, and so is a closed
+    // loop whose windows show nothing but imitations of disturbances.
     let shows_nothing = of_windows
         .as_ref()
         .is_some_and(|(_, windows)| none(windows));
@@ -190,12 +186,13 @@ pub(super) fn judged<'a>(
 }
 
 impl Comparison {
-    /// Over windows, where there is no process noise, effects may imitate the disturbances to which a controller responds:
-    /// hypotheses are left out if one step ahead, with process noise, a robot is predicted worse than by the nominal model
-    /// or with fewer effects, and any other closed loop if it is not predicted better. A filter does not carry the coordinates that effects add. `levels` are those of the
-    /// nominal model one step ahead.
+    /// Over windows, where there is no process noise, effects may imitate the disturbances to which a controller
+    /// responds: hypotheses are left out if one step ahead, with process noise, a robot is predicted worse than by the
+    /// nominal model or with fewer effects, and any other closed loop if it is not predicted better. A filter does not
+    /// carry the coordinates that effects add. `levels` are those of the nominal model one step ahead.
     fn without_imitations(&mut self, bench: &Bench<'_>, over: &Bench<'_>, levels: &Fitted) {
-        let taken = |fitted: &Fitted| bench.as_it_is(over, fitted, levels).ok();
+        let levels = (&levels.fit.values[..], &levels.layout);
+        let taken = |fitted: &Fitted| bench.with_levels(over, fitted, levels, SHARES).ok();
         // One-step predictions that diverge tell nothing.
         let Some(without) = taken(self.nominal()) else {
             return;
@@ -239,14 +236,15 @@ impl Comparison {
     }
 }
 
-/// The comparison one step ahead, with coloured process noise, of the nominal model and a hypothesis that leads over windows,
-/// if the former leads there: the command of a controller answers disturbances, so that windows without them are biased.
+/// The comparison one step ahead, with coloured process noise, of the nominal model and a hypothesis that leads over
+/// windows, if the former leads there: the command of a controller answers disturbances, so that windows without them
+/// are biased.
 fn outdone(
     bench: &Bench<'_>,
     over: &Bench<'_>,
     nominal: &Fitted,
     best: &Fitted,
-) -> Result<Option<Comparison>, DiagnoseError> {
+) -> Result<Option<Comparison>> {
     let is_closed = bench.input_innovations.is_closed && !bench.is_of_robot;
     if !is_closed || best.members.is_empty() {
         return Ok(None);
@@ -268,7 +266,7 @@ pub(super) fn lengthened<'a>(
     levels: &[(Unknown, f64)],
     whole: &DataSet,
     stage: &mut impl FnMut(&'static str),
-) -> Result<Judged<'a>, DiagnoseError> {
+) -> Result<Judged<'a>> {
     let mut before = length(whole);
     for (times, count, rows) in LONGER {
         let best = judged.comparison.best();
@@ -297,7 +295,7 @@ pub(super) fn lengthened<'a>(
         if over.left(gain) < IMMATERIAL {
             comparison.weigh_unknown(&over)?;
             return Ok(Judged {
-                screen: Screen::of(&over, comparison.nominal())?,
+                screen: screen(&over, comparison.nominal())?,
                 bench: over,
                 comparison,
                 outside: None,
@@ -314,7 +312,7 @@ fn nothing_left(
     nominal: &Fitted,
     known: Vec<Fitted>,
     stepwise: Option<Comparison>,
-) -> Result<Option<Comparison>, DiagnoseError> {
+) -> Result<Option<Comparison>> {
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise.with(bench, known)?),
         None => Comparison::of(bench, nominal.clone(), known, |_| Look::Holds)?,
@@ -329,9 +327,9 @@ fn nothing_left(
 }
 
 /// The ranking by simulations, with some known hypotheses.
-fn simulated(over: &Bench<'_>, known: Vec<Fitted>) -> Result<(Screen, Comparison), DiagnoseError> {
+fn simulated(over: &Bench<'_>, known: Vec<Fitted>) -> Result<(Vec<Screened>, Comparison)> {
     let nominal = over.nominal()?;
-    let screen = Screen::of(over, &nominal)?;
+    let screen = screen(over, &nominal)?;
     let comparison = Comparison::of(over, nominal, known, |_| Look::Holds)?;
     Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
@@ -353,28 +351,22 @@ struct Again {
     other: Option<usize>,
 }
 
-impl Again {
-    fn log_likelihood(&self) -> f64 {
-        self.fitted.fit.log_likelihood
-    }
-}
-
 impl Seen<'_, '_> {
     /// The ranking by one-step predictions, `None` if the windows reject it early; and whether the windows confirm it.
     /// They do not if process noise absorbs a missing effect.
-    fn one_step(&mut self, nominal: &Fitted) -> Result<Option<(Comparison, bool)>, DiagnoseError> {
+    fn one_step(&mut self, nominal: &Fitted) -> Result<Option<(Comparison, bool)>> {
         let (bench, over) = (self.bench, self.over);
         let look = |fitted: &Fitted| self.look(fitted, nominal);
         let found = Comparison::of(bench, nominal.clone(), Vec::new(), look)?;
         let Some(mut comparison) = found else {
             return Ok(None);
         };
-        let of_nominal = self.again(nominal).map(Again::log_likelihood);
+        let of_nominal = self.log_likelihood(nominal);
         let Some(again) = self.again(comparison.best()) else {
             return Ok(Some((comparison, true)));
         };
         if let Some(of_nominal) = of_nominal {
-            comparison.stays = over.left(again.log_likelihood() - of_nominal);
+            comparison.stays = over.left(again.fitted.fit.log_likelihood - of_nominal);
         }
         let holds = again.gain.max(again.by_others) < REFUTED;
         Ok(Some((comparison, holds)))
@@ -383,11 +375,7 @@ impl Seen<'_, '_> {
     /// Refitted hypotheses that are comparable with those of the windows: a delayed channel has other samples.
     fn comparable(&self) -> Vec<Fitted> {
         let fits = self.again.values().flatten().map(|again| &again.fitted);
-        let is_late = |&member: &usize| {
-            let acts = self.over.candidate(member).acts;
-            matches!(acts, Acts::Late(_))
-        };
-        fits.filter(|fitted| !fitted.members.iter().any(is_late))
+        fits.filter(|fitted| !self.over.is_late(&fitted.members))
             .cloned()
             .collect()
     }
@@ -397,8 +385,8 @@ impl Seen<'_, '_> {
         let again = self.again.entry(fitted.members.clone());
         let fit = || {
             let (gain, fitted) = self.over.fitted_again(self.bench, fitted).ok()?;
-            let screen = Screen::of(self.over, &fitted).ok();
-            let other = screen.as_ref().and_then(|screen| screen.list.first());
+            let others = screen(self.over, &fitted).unwrap_or_default();
+            let other = others.first();
             Some(Again {
                 gain,
                 by_others: other.map_or(0.0, |other| other.gain),
@@ -409,14 +397,18 @@ impl Seen<'_, '_> {
         again.or_insert_with(fit).as_ref()
     }
 
+    fn log_likelihood(&mut self, fitted: &Fitted) -> Option<f64> {
+        Some(self.again(fitted)?.fitted.fit.log_likelihood)
+    }
+
     /// Validates a hypothesis before others are added to it. A single effect may need another one; but it is rejected
     /// if it shows only one step ahead, together with others that predict.
     fn look(&mut self, fitted: &Fitted, nominal: &Fitted) -> Look {
-        let of_nominal = self.again(nominal).map(Again::log_likelihood);
+        let of_nominal = self.log_likelihood(nominal);
         let Some(again) = self.again(fitted) else {
             return Look::Holds;
         };
-        let gain = of_nominal.map(|nominal| again.log_likelihood() - nominal);
+        let gain = of_nominal.map(|nominal| again.fitted.fit.log_likelihood - nominal);
         let is_idle = gain.is_some_and(|gain| gain < IDLE * again.by_others);
         let lacks = |most: f64| again.by_others >= most;
         if again.gain >= REFUTED_ALONE {
@@ -432,7 +424,7 @@ impl Seen<'_, '_> {
 
 /// The runs, cut into windows of half a typical period: long enough that forces affect the motion, short
 /// enough that errors do not dominate it.
-pub(super) fn windows(set: &DataSet, is_of_robot: bool) -> Result<DataSet, DiagnoseError> {
+pub(super) fn windows(set: &DataSet, is_of_robot: bool) -> Result<DataSet> {
     let windows = if is_of_robot { OF_ROBOT } else { WINDOWS };
     Ok(set.windows(length(set), windows, ROWS)?)
 }
@@ -468,9 +460,5 @@ fn length(set: &DataSet) -> f64 {
 
 /// Duration of the longest run in s.
 fn longest(set: &DataSet) -> f64 {
-    let durations = set
-        .runs
-        .iter()
-        .map(|run| run.times[run.times.len() - 1] - run.times[0]);
-    durations.fold(0.0, f64::max)
+    set.runs.iter().map(Run::duration).fold(0.0, f64::max)
 }

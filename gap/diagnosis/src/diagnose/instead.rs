@@ -3,11 +3,9 @@
 use appell_estimate::{Estimation, Unknown};
 use appell_recordings::{Measured, Role};
 
-use super::DiagnoseError;
-use super::bench::Bench;
 use super::calibration::TIED;
-use super::evidence::Fitted;
 use super::search::Search;
+use super::{Bench, Fitted, Result};
 use crate::effects::Acts;
 
 /// What takes the place of a member: candidates, each with its unknown, and the initial value of all of them.
@@ -36,11 +34,7 @@ impl Search<'_, '_> {
     }
 
     /// `None` for members that nothing resembles, and for delays of encoders that are fitted already.
-    fn fitted_instead(
-        &self,
-        whole: &Fitted,
-        member: usize,
-    ) -> Result<Option<Fitted>, DiagnoseError> {
+    fn fitted_instead(&self, whole: &Fitted, member: usize) -> Result<Option<Fitted>> {
         let bench = self.bench;
         let acts = bench.candidate(member).acts;
         let instead = match acts {
@@ -69,21 +63,17 @@ impl Search<'_, '_> {
         for (_, unknown) in instead.members {
             start[estimation.layout().place(unknown)?] = instead.value;
         }
-        let mut fitted = bench.fit(&members, &estimation, &start)?;
+        let mut fitted = bench.fit(bench.effort(), &members, &estimation, &start)?;
         self.count_late(&mut fitted)?;
         Ok(Some(fitted))
     }
 }
 
 /// The lag of a channel, unless it is too short to be distinguished from the delay.
-fn lag(
-    bench: &Bench<'_>,
-    whole: &Fitted,
-    channel: usize,
-) -> Result<Option<Instead>, DiagnoseError> {
+fn lag(bench: &Bench<'_>, whole: &Fitted, channel: usize) -> Result<Option<Instead>> {
     let acts = Acts::Slow(channel);
     let delay = whole.fit.values[whole.layout.place(Unknown::SensorDelay(channel))?];
-    let slow = candidate(bench, acts).filter(|&slow| !bench.is_too_short(slow, &[delay]));
+    let slow = candidate(bench, acts, false).filter(|&slow| !bench.is_too_short(slow, &[delay]));
     let free = slow.and_then(|slow| bench.of_signal(acts, &bench.setup(&[slow])));
     let (Some(slow), Some(free)) = (slow, free) else {
         return Ok(None);
@@ -95,20 +85,15 @@ fn lag(
 }
 
 /// The delays of the position and the rate of the joint that an actuator of a robot drives.
-fn delays_of_encoder(
-    bench: &Bench<'_>,
-    whole: &Fitted,
-    input: usize,
-) -> Result<Option<Instead>, DiagnoseError> {
+fn delays_of_encoder(bench: &Bench<'_>, whole: &Fitted, input: usize) -> Result<Option<Instead>> {
     let Some(coordinate) = driven(bench, input) else {
         return Ok(None);
     };
-    let place = bench.setup(&whole.members);
-    let place = place.delayed.iter().position(|own| *own == input);
-    let Some(place) = place else {
+    let setup = bench.setup(&whole.members);
+    let Some(own) = bench.of_signal(Acts::Delay(input), &setup) else {
         return Ok(None);
     };
-    let delay = whole.fit.values[whole.layout.place(Unknown::InputDelay(place))?];
+    let delay = whole.fit.values[whole.layout.place(own.unknown)?];
     let info = bench.effects.info();
     let measured = bench.set.measured(info);
     let mut members = Vec::new();
@@ -119,8 +104,8 @@ fn delays_of_encoder(
             }
             _ => false,
         };
-        let late = of_group(bench, Acts::Late(channel));
-        let late = late.or_else(|| candidate(bench, Acts::Late(channel)));
+        let acts = Acts::Late(channel);
+        let late = candidate(bench, acts, true).or_else(|| candidate(bench, acts, false));
         let late = late.filter(|_| is_of_joint);
         members.extend(late.map(|late| (late, Unknown::SensorDelay(channel))));
     }
@@ -143,14 +128,8 @@ fn driven(bench: &Bench<'_>, input: usize) -> Option<usize> {
     coordinate.checked_sub(info.speeds)
 }
 
-/// The candidate with an action.
-fn candidate(bench: &Bench<'_>, acts: Acts) -> Option<usize> {
+/// The candidate with an action, at a group of sites or at one.
+fn candidate(bench: &Bench<'_>, acts: Acts, is_of_group: bool) -> Option<usize> {
     let mut candidates = bench.effects.candidates.iter();
-    candidates.position(|own| own.acts == acts && !own.is_of_group())
-}
-
-/// The same of a group of sites.
-fn of_group(bench: &Bench<'_>, acts: Acts) -> Option<usize> {
-    let mut candidates = bench.effects.candidates.iter();
-    candidates.position(|own| own.acts == acts && own.is_of_group())
+    candidates.position(|own| own.acts == acts && own.is_of_group() == is_of_group)
 }

@@ -4,25 +4,19 @@
 //! effects; their amplitudes are fitted like other parameters, with a prior that admits discontinuous laws. The law can
 //! therefore predict runs and be written into a spec.
 
-mod deviation;
-mod hidden_mass;
-mod hysteresis;
-mod waves;
+mod course;
 
-use appell_estimate::{Along, Estimation};
+use appell_estimate::{Along, Estimation, Unknown};
 
-use super::DiagnoseError;
-use super::bench::Bench;
 use super::calibration::{IMMATERIAL, TIED};
-use super::compare::Comparison;
-use super::evidence::Fitted;
-use super::held_out::HeldOut;
+use super::forms::forms;
+use super::localise::force_unit;
 use super::prediction::noise;
-use super::report::Law;
 use super::scales;
 use super::unknown::{
     Dependence, Leftover, On, Series, Unnamed, leftover, remembered, wave_scores,
 };
+use super::{Bench, Comparison, DiagnoseError, Fitted, HeldOut, Law, Result};
 use crate::effects::{Candidate, EffectModel, Memory};
 use crate::held_out::AHEAD;
 use appell_recordings::{DataSet, Part};
@@ -63,10 +57,7 @@ pub(super) struct FittedLaw<'l> {
 
 /// The equations with a law for the residual force, if it depends on quantities of the model: in addition to the best
 /// hypothesis, and to the nominal model if that hypothesis may be wrong.
-pub(super) fn lawful(
-    bench: &Bench<'_>,
-    comparison: &Comparison,
-) -> Result<Vec<Lawful>, DiagnoseError> {
+pub(super) fn lawful(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Lawful>> {
     let (best, nominal) = (comparison.best(), comparison.nominal());
     let of_best = comparison.left.clone().filter(|left| {
         let log = comparison.independent * left.log_bayes_factor;
@@ -88,30 +79,23 @@ pub(super) fn lawful(
     Ok(all)
 }
 
-/// Fits each law together with the hypothesis to which it is added.
-pub(super) fn fitted<'l>(
-    laws: &'l [Lawful],
-    main: &Bench<'_>,
-    test: &DataSet,
-) -> Vec<Result<FittedLaw<'l>, DiagnoseError>> {
-    laws.iter().map(|law| law.fitted(main, test)).collect()
-}
-
-/// The law with the largest evidence, or the error if none could be fitted. `runs` are the training runs.
+/// Fits each law together with the hypothesis to which it is added: the one with the largest evidence, or the error if
+/// none could be fitted. `runs` are the training runs.
 pub(super) fn measured<'l>(
-    fitted: Vec<Result<FittedLaw<'l>, DiagnoseError>>,
+    laws: &'l [Lawful],
     comparison: &mut Comparison,
     bench: &Bench<'_>,
     runs: &DataSet,
-) -> Option<Result<FittedLaw<'l>, DiagnoseError>> {
-    let evidence = |law: &Result<FittedLaw<'_>, DiagnoseError>| {
+    test: &DataSet,
+) -> Option<Result<FittedLaw<'l>>> {
+    let evidence = |law: &Result<FittedLaw<'_>>| {
         let found = law.as_ref();
         found.map_or(f64::NEG_INFINITY, |law| law.log_evidence)
     };
-    let mut laws = fitted;
+    let laws = laws.iter().map(|law| law.fitted(bench, test));
+    let mut laws: Vec<Result<FittedLaw<'l>>> = laws.collect();
     laws.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
-    let holds = |law: &Result<FittedLaw<'_>, DiagnoseError>, comparison: &mut Comparison| match law
-    {
+    let holds = |law: &Result<FittedLaw<'_>>, comparison: &mut Comparison| match law {
         Ok(law) if law.base.members.len() < comparison.best().members.len() => {
             law.predicts(comparison.best(), bench, runs)
                 .unwrap_or(false)
@@ -126,12 +110,7 @@ pub(super) fn measured<'l>(
 impl FittedLaw<'_> {
     /// Whether it predicts runs better than a hypothesis: a filter may fit a hidden state to a motion that it does not
     /// cause.
-    fn predicts(
-        &self,
-        other: &Fitted,
-        bench: &Bench<'_>,
-        runs: &DataSet,
-    ) -> Result<bool, DiagnoseError> {
+    fn predicts(&self, other: &Fitted, bench: &Bench<'_>, runs: &DataSet) -> Result<bool> {
         let runs = runs.all(Part::Test);
         let noise = noise(bench, other)?;
         let errors = |bench: &Bench<'_>, fitted: &Fitted| {
@@ -143,11 +122,7 @@ impl FittedLaw<'_> {
 }
 
 /// The equations of a hypothesis with a law for its residual.
-fn beside(
-    bench: &Bench<'_>,
-    base: &Fitted,
-    left: Leftover,
-) -> Result<Option<Lawful>, DiagnoseError> {
+fn beside(bench: &Bench<'_>, base: &Fitted, left: Leftover) -> Result<Option<Lawful>> {
     let first = &left.first;
     let brings = |member: &usize| bench.candidate(*member).brings.is_some();
     if first.along != Along::Disturbances || base.members.iter().any(brings) {
@@ -180,20 +155,18 @@ fn of_variable(
     base: &Fitted,
     law: &Unnamed,
     wave: Option<usize>,
-) -> Result<Found, DiagnoseError> {
+) -> Result<Found> {
     let Some(dependence) = dependence(bench, law) else {
         return Ok(None);
     };
     let setup = bench.setup(&base.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let scores = wave_scores(bench, &estimation, base, &[dependence], law.along)?;
-    let mut scores = scores
-        .into_iter()
-        .flatten()
-        .filter(|(place, _)| *place == law.place);
-    let series = scores.next().and_then(|(_, scores)| scores.series(wave));
+    let mut scores = scores.into_iter().flatten();
+    let own = scores.find(|(place, _)| *place == law.place);
+    let series = own.and_then(|(_, scores)| scores.series(wave));
     Ok(series.and_then(|series| {
-        let candidate = waves::candidate(bench, dependence, law, wave, &series)?;
+        let candidate = course::candidate(bench, dependence, law, wave, &series)?;
         let sizes = series.terms.iter().flat_map(|(_, sizes, _)| *sizes);
         let start = sizes.collect();
         Some((candidate, Kind::Waves(series), start))
@@ -216,7 +189,7 @@ fn of_memory(bench: &Bench<'_>, memory: &Memory) -> Found {
 
 impl Lawful {
     /// Fits the coefficients together with all free parameters of the hypothesis.
-    fn fitted(&self, main: &Bench<'_>, test: &DataSet) -> Result<FittedLaw<'_>, DiagnoseError> {
+    fn fitted(&self, main: &Bench<'_>, test: &DataSet) -> Result<FittedLaw<'_>> {
         let bench = main.beside(&self.effects)?;
         let members: Vec<usize> = (0..self.effects.candidates.len()).collect();
         let setup = bench.setup(&members);
@@ -230,25 +203,54 @@ impl Lawful {
             start[place] = size;
         }
         bench.hide(&members, &estimation, &mut start)?;
-        let fitted = bench.fit_finely(&members, &estimation, &start)?;
+        let fitted = bench.fit(bench.finely(), &members, &estimation, &start)?;
         drop(estimation);
         let first = &self.left.first;
+        let values: Vec<f64> = (places.iter())
+            .map(|&place| fitted.fit.values[place])
+            .collect();
+        let force = force_unit(&main.effects.mechanism, first.place);
+        let covariance = fitted.fit.covariance().ok();
+        let free = |place: &usize| {
+            let mut free = fitted.fit.free.iter();
+            free.position(|free| free.unknown == Unknown::Parameter(*place))
+        };
+        let free: Vec<Option<usize>> = places.iter().map(free).collect();
+        let deviation = |slopes: &[f64]| {
+            let mut variance = 0.0;
+            for (i, a) in free.iter().zip(slopes) {
+                for (j, b) in free.iter().zip(slopes) {
+                    if let (Some(i), Some(j), Some(covariance)) = (i, j, &covariance) {
+                        variance += a * b * covariance[(*i, *j)];
+                    }
+                }
+            }
+            variance.max(0.0).sqrt()
+        };
         let law = match &self.kind {
             Kind::Memory(Memory::HiddenMass { behind, .. }) => {
-                hidden_mass::law(main, first, behind, &fitted, &places)
+                course::of_hidden_mass(&force, behind, &values, deviation)
             }
             Kind::Memory(Memory::Hysteresis { along, .. }) => {
-                hysteresis::law(main, first, along, &fitted, &places)
+                course::of_hysteresis(main, force, along, &values, deviation)
             }
             Kind::Waves(series) => {
                 let dependence = dependence(main, first);
                 let dependence = dependence.ok_or(DiagnoseError::NothingToFit)?;
-                let base = &self.base;
-                waves::law(main, base, first, dependence, series, &fitted, &places)?
+                Law {
+                    forms: forms(main, &self.base, dependence, first)?,
+                    ..course::of_waves(main, force, dependence, series, &values, deviation)
+                }
             }
         };
+        let law = Law {
+            equation: main.effects.info().states[first.place].name.to_string(),
+            depends_on: first.variable.clone(),
+            log_bayes_factor: first.gains.log_bayes_factor,
+            ..law
+        };
         let gain = fitted.fit.log_posterior - self.base.fit.log_posterior;
-        let first = self.left.log_bayes_factor - self.left.first.gain;
+        let first = self.left.log_bayes_factor - self.left.first.gains.gain;
         Ok(FittedLaw {
             left: &self.left,
             log_evidence: self.base.evidence.log() + first + gain,

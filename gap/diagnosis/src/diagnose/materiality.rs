@@ -3,14 +3,9 @@
 //! No law is exact, so that a long recording makes many an effect significant. A member without which held-out runs are
 //! predicted as well is therefore no cause, unless its evidence is beyond what small errors of other members may feign.
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::budget;
 use super::calibration::IMMATERIAL;
-use super::compare::Comparison;
-use super::held_out::{self, HeldOut};
-use super::options::Options;
 use super::prediction::{self, Paired, stated};
+use super::{Bench, Comparison, HeldOut, Options, Result, budget, held_out};
 
 /// Log Bayes factor beyond which a member is there although it closes nothing.
 const DECISIVE: f64 = 20.0;
@@ -25,7 +20,7 @@ impl Comparison {
         bench: &Bench<'_>,
         runs: &HeldOut,
         options: &Options,
-    ) -> Result<(), DiagnoseError> {
+    ) -> Result<()> {
         if bench.is_of_robot || runs.recordings.is_empty() {
             return Ok(());
         }
@@ -34,7 +29,7 @@ impl Comparison {
         let horizon = horizon.unwrap_or_else(|| held_out::horizon(&runs.recordings));
         let tolerance = options.tolerance.unwrap_or(IMMATERIAL);
         while let Some(fewer) = self.with_fewer(bench) {
-            let floor = prediction::floor(&runs.recordings, bench, self.best(), &noise, horizon)?;
+            let floor = runs.floor(bench, self.best(), &noise, horizon)?;
             let stated = stated(bench, self.nominal())?;
             let errors = |own| runs.errors(bench, own, &noise, horizon);
             let [stated, refitted] = [errors(&stated)?, errors(self.nominal())?];
@@ -62,10 +57,8 @@ impl Comparison {
             let lacks = |(_, members): &&(String, Vec<usize>)| {
                 !members.iter().any(|member| own.members.contains(member))
             };
-            let is_part = own
-                .members
-                .iter()
-                .all(|member| best.members.contains(member));
+            let mut members = own.members.iter();
+            let is_part = members.all(|member| best.members.contains(member));
             let lost = best.evidence.log() - own.evidence.log();
             is_part
                 && !own.members.is_empty()

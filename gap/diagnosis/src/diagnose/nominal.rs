@@ -1,10 +1,10 @@
 //! Fits of the nominal model.
 
-use appell_estimate::{Effort, Estimation, Fit, Unknown};
+use appell_estimate::{Effort, Estimation, Fit};
 
-use super::DiagnoseError;
-use super::bench::{Bench, ROUGHLY};
-use super::evidence::Fitted;
+use super::bench::{ROUGHLY, SHARES};
+use super::starts::scale_process_noise;
+use super::{Bench, Fitted, Result};
 
 /// Largest number of tenfold increases of the process noise if the filter diverges.
 const LOST: usize = 4;
@@ -15,7 +15,7 @@ impl Bench<'_> {
     /// The nominal model, its parameters within their tolerances. Noise levels are fitted first: with levels that are
     /// far too small the parameters would leave their tolerances to fit noise. If the filter diverges, as with a wrong
     /// model of an unstable mechanism, the search is repeated with larger initial process noise.
-    pub(super) fn nominal(&self) -> Result<Fitted, DiagnoseError> {
+    pub(super) fn nominal(&self) -> Result<Fitted> {
         let setup = self.setup(&[]);
         let estimation = Estimation::new(&setup, &self.recordings)?;
         let mut start = self.problem.start.clone();
@@ -24,16 +24,14 @@ impl Bench<'_> {
             if fitted.is_ok() {
                 break;
             }
-            for index in 0..setup.disturbances.len() {
-                start[estimation.layout().place(Unknown::Disturbance(index))?] *= 10.0;
-            }
+            scale_process_noise(&estimation, &mut start, 10.0)?;
             fitted = self.nominal_from(&estimation, &start);
         }
         fitted
     }
 
     /// The model as stated, with the noise levels that fit.
-    pub(super) fn stated(&self) -> Result<Fitted, DiagnoseError> {
+    pub(super) fn stated(&self) -> Result<Fitted> {
         let setup = self.setup(&[]);
         let estimation = Estimation::new(&setup, &self.recordings)?;
         let mut start = self.problem.start.clone();
@@ -43,16 +41,14 @@ impl Bench<'_> {
             steps: 0,
             ..ROUGHLY
         };
-        self.fit_by(Fit::quick, as_it_is, &[], &estimation, &levels)
+        self.fit(as_it_is, &[], &estimation, &levels)
     }
 
     /// Noise levels, or likelier ones that a search finds from less process noise: the rates of stiff servos may be taken
     /// for process noise or for measured ones, and a search does not cross from one to the other.
-    fn quieter(&self, estimation: &Estimation<'_>, first: Fit) -> Result<Vec<f64>, DiagnoseError> {
+    fn quieter(&self, estimation: &Estimation<'_>, first: Fit) -> Result<Vec<f64>> {
         let mut start = first.values.clone();
-        for index in 0..estimation.setup().disturbances.len() {
-            start[estimation.layout().place(Unknown::Disturbance(index))?] *= QUIETER;
-        }
+        scale_process_noise(estimation, &mut start, QUIETER)?;
         let second = Fit::quick(estimation, &start, &self.problem.levels, ROUGHLY);
         Ok(match second {
             Ok(second) if second.log_likelihood > first.log_likelihood => second.values,
@@ -60,21 +56,17 @@ impl Bench<'_> {
         })
     }
 
-    fn nominal_from(
-        &self,
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
+    fn nominal_from(&self, estimation: &Estimation<'_>, start: &[f64]) -> Result<Fitted> {
         let mut start = start.to_vec();
         self.loosen(estimation, &mut start)?;
         let levels = Fit::quick(estimation, &start, &self.problem.levels, ROUGHLY)?;
         // One step ahead a robot needs its noise levels only.
         if self.is_of_robot && !self.is_over_windows() {
             let levels = self.quieter(estimation, levels)?;
-            return self.fit_roughly(&[], estimation, &levels);
+            return self.fit(SHARES, &[], estimation, &levels);
         }
         let levels = levels.values;
-        let fitted = self.fit(&[], estimation, &levels)?;
+        let fitted = self.fit(self.effort(), &[], estimation, &levels)?;
         if fitted.fit.is_optimum() || self.is_over_windows() {
             return Ok(fitted);
         }

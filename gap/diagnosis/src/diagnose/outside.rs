@@ -11,14 +11,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use appell_estimate::{Estimation, Recording};
 use appell_recordings::{DataSet, Part};
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
-use super::held_out::HeldOut;
 use super::horizon::Judged;
+use super::localise::length;
 use super::prediction::taken_over;
-use super::report::Window;
-use super::windows;
+use super::{Bench, Fitted, HeldOut, Result, Window, whole};
 use crate::held_out::origins;
 
 /// Number of prediction origins per horizon, and the largest one per run.
@@ -32,8 +28,8 @@ const OUTSIDE: f64 = 8.0;
 /// Largest part of outlying predictions: more frequent ones have a cause in the mechanism.
 const RARE: f64 = 0.1;
 /// Smallest number of overlapping predictions that an event spoils: a force changes the speeds, and with them the
-/// predictions from all origins shortly before, while the torque of a joint at the moment when its friction turns round is
-/// off in a single one.
+/// predictions from all origins shortly before, while the torque of a joint at the moment when its friction turns round
+/// is off in a single one.
 const LASTING: usize = 2;
 /// Largest number of reported windows.
 const MOST_WINDOWS: usize = 20;
@@ -53,16 +49,13 @@ pub(super) fn windows(
     fitted: &Fitted,
     set: &DataSet,
     recordings: &[Recording],
-) -> Result<Vec<Window>, DiagnoseError> {
+) -> Result<Vec<Window>> {
     if recordings.is_empty() {
         return Ok(Vec::new());
     }
     let mut errors = errors(bench, fitted, recordings)?;
-    let mut channels = 0;
-    for error in &errors {
-        channels = channels.max(error.channel + 1);
-    }
-    for channel in 0..channels {
+    let channels = errors.iter().map(|error| error.channel + 1).max();
+    for channel in 0..channels.unwrap_or(0) {
         let own = errors.iter().filter(|one| one.channel == channel);
         let scale = scale(own.map(|one| one.times).collect());
         let own = errors.iter_mut().filter(|one| one.channel == channel);
@@ -97,7 +90,7 @@ pub(super) fn of_both(
     fitted: &Fitted,
     [training, test]: [(&DataSet, &HeldOut); 2],
     known: Option<Vec<Window>>,
-) -> Result<Vec<Window>, DiagnoseError> {
+) -> Result<Vec<Window>> {
     let of = |(set, runs): (&DataSet, &HeldOut)| windows(bench, fitted, set, &runs.recordings);
     let mut found = match known {
         Some(known) => known,
@@ -109,50 +102,36 @@ pub(super) fn of_both(
 
 /// Training runs without the windows that the best hypothesis does not predict; `None` without such windows, or without
 /// a gap.
-pub(super) fn rest(
-    judged: &mut Judged<'_>,
-    whole: &DataSet,
-) -> Result<Option<DataSet>, DiagnoseError> {
+pub(super) fn rest(judged: &mut Judged<'_>, whole: &DataSet) -> Result<Option<DataSet>> {
     if judged.comparison.is_null() {
         return Ok(None);
     }
-    let found = of_training(judged, whole)?;
-    let margin = 0.5 * windows::length(&judged.bench);
+    let found = if let Some(known) = &judged.outside {
+        known.clone()
+    } else {
+        let runs = HeldOut::of(&whole.all(Part::Test), &judged.bench)?;
+        let best = judged.comparison.best();
+        windows(&judged.bench, best, whole, &runs.recordings)?
+    };
+    judged.outside = Some(found.clone());
+    let margin = 0.5 * length(&judged.bench);
     let cut = found.into_iter();
     let cut = cut.map(|one| (one.run, [one.from - margin, one.to + margin]));
     let cut: Vec<_> = cut.collect();
     Ok((!cut.is_empty()).then(|| whole.without(&cut)))
 }
 
-/// The windows of the training runs.
-fn of_training(judged: &mut Judged<'_>, whole: &DataSet) -> Result<Vec<Window>, DiagnoseError> {
-    if let Some(known) = &judged.outside {
-        return Ok(known.clone());
-    }
-    let bench = &judged.bench;
-    let runs = HeldOut::of(&whole.all(Part::Test), bench)?;
-    let found = windows(bench, judged.comparison.best(), whole, &runs.recordings)?;
-    judged.outside = Some(found.clone());
-    Ok(found)
-}
-
 /// Moduli of the prediction errors, in expected standard deviations.
-fn errors(
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    recordings: &[Recording],
-) -> Result<Vec<Error>, DiagnoseError> {
+fn errors(bench: &Bench<'_>, fitted: &Fitted, recordings: &[Recording]) -> Result<Vec<Error>> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, recordings)?;
     let values = taken_over(bench, fitted, &estimation)?;
-    let horizon = windows::length(bench);
+    let horizon = length(bench);
     let mut errors = Vec::new();
     for (run, recording) in recordings.iter().enumerate() {
         let times = recording.times();
         let duration = times[times.len() - 1] - times[0];
-        // A count of origins.
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let most = (EACH * duration / horizon).ceil() as usize;
+        let most = whole((EACH * duration / horizon).ceil());
         let origins = origins(recording, most.clamp(1, MOST));
         let predicted = estimation.predictions(&values, run, horizon, &origins)?;
         // Near an unstable equilibrium small errors grow.
@@ -178,9 +157,7 @@ fn errors(
 /// The scale of ordinary errors.
 fn scale(mut sizes: Vec<f64>) -> f64 {
     sizes.sort_by(f64::total_cmp);
-    // An index in a list.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let place = (ORDINARY * sizes.len() as f64) as usize;
+    let place = whole(ORDINARY * sizes.len() as f64);
     let ordinary = sizes.get(place).copied().unwrap_or(f64::INFINITY);
     (ordinary / QUANTILE).max(f64::MIN_POSITIVE)
 }

@@ -7,25 +7,17 @@
 
 use std::collections::BTreeMap;
 
-use appell_estimate::{Estimation, Recording, Unknown};
+use appell_estimate::{Estimation, Unknown};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
-use crate::held_out::origins;
+use super::starts::scale_process_noise;
+use super::{Bench, Fitted, Result};
 
-/// Number of rows from which expected errors are computed.
-const EXPECTED_FROM: usize = 25;
 /// Largest number of tenfold increases of the process noise.
 const MORE: usize = 6;
 /// Number of bootstrap samples.
 const DRAWS: usize = 1000;
-/// Length of a block relative to the horizon, over which errors are correlated.
-const BLOCK: f64 = 1.0;
-/// The same in s for predictions of one step and of whole runs.
-const BLOCK_S: f64 = 2.0;
 
 /// Sums of squared errors with their counts.
 #[derive(Debug, Clone, Default)]
@@ -107,7 +99,14 @@ impl Paired {
 
     /// Quantiles 2.5 and 97.5 % of a function of the mean squares; with a fixed seed.
     pub(super) fn interval95(&self, number: impl Fn(&[f64]) -> f64) -> [f64; 2] {
-        let mut drawn = self.drawn(number);
+        let mut random = SplitMix64::seed_from_u64(1);
+        let count = self.sums.len();
+        let mut below = || usize::try_from(random.next_u64() % count.max(1) as u64).unwrap_or(0);
+        let numbers = (0..DRAWS).map(|_| {
+            let blocks: Vec<usize> = (0..count).map(|_| below()).collect();
+            number(&self.over(blocks.into_iter()))
+        });
+        let mut drawn: Vec<f64> = numbers.collect();
         drawn.sort_by(f64::total_cmp);
         let at = |part: usize| {
             let one = drawn.get(part * drawn.len() / 1000);
@@ -115,94 +114,10 @@ impl Paired {
         };
         [at(25), at(975)]
     }
-
-    fn drawn(&self, number: impl Fn(&[f64]) -> f64) -> Vec<f64> {
-        let mut random = SplitMix64::seed_from_u64(1);
-        let count = self.sums.len();
-        let mut below = || usize::try_from(random.next_u64() % count.max(1) as u64).unwrap_or(0);
-        (0..DRAWS)
-            .map(|_| {
-                let drawn: Vec<usize> = (0..count).map(|_| below()).collect();
-                number(&self.over(drawn.into_iter()))
-            })
-            .collect()
-    }
-}
-
-/// Errors of a fitted hypothesis on recordings, which may differ from the training runs.
-pub(super) fn errors(
-    recordings: &[Recording],
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    noise: &[f64],
-    horizon: f64,
-    most: usize,
-) -> Result<Errors, DiagnoseError> {
-    let setup = bench.setup(&fitted.members);
-    let estimation = Estimation::new(&setup, recordings)?;
-    let values = taken_over(bench, fitted, &estimation)?;
-    let mut errors = Errors::default();
-    let length = if horizon > 0.0 && horizon.is_finite() {
-        BLOCK * horizon
-    } else {
-        BLOCK_S
-    };
-    for (run, recording) in recordings.iter().enumerate() {
-        let mut origins = origins(recording, most);
-        if horizon.is_infinite() {
-            origins.truncate(1);
-        }
-        for one in estimation.predictions(&values, run, horizon, &origins)? {
-            if noise[one.channel].is_infinite() {
-                continue;
-            }
-            let block = (recording.times()[one.origin] - recording.times()[0]) / length;
-            // A count of blocks in memory.
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let block = block as usize;
-            let square = (one.residual / noise[one.channel]).powi(2);
-            errors.add([run, block], one.channel, square);
-        }
-    }
-    Ok(errors)
-}
-
-/// The expected error of a true hypothesis, root of the mean square.
-pub(super) fn floor(
-    recordings: &[Recording],
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    noise: &[f64],
-    horizon: f64,
-) -> Result<f64, DiagnoseError> {
-    if let Some(sensors) = bench.noise_of_sensors() {
-        let parts = sensors
-            .iter()
-            .zip(noise)
-            .filter(|(_, unit)| unit.is_finite());
-        let squares: Vec<f64> = parts
-            .map(|(sensor, unit)| (sensor / unit).powi(2))
-            .collect();
-        return Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt());
-    }
-    let setup = bench.setup(&fitted.members);
-    let estimation = Estimation::new(&setup, recordings)?;
-    let values = taken_over(bench, fitted, &estimation)?;
-    let (mut squares, mut count) = (0.0, 0.0_f64);
-    for (run, recording) in recordings.iter().enumerate() {
-        let origins = origins(recording, EXPECTED_FROM);
-        for (_, channel, variance) in estimation.expected_errors(&values, run, horizon, &origins)? {
-            if noise[channel].is_finite() {
-                squares += variance / noise[channel].powi(2);
-                count += 1.0;
-            }
-        }
-    }
-    Ok((squares / count.max(1.0)).sqrt())
 }
 
 /// The model with the parameters stated by the data set, and the noise levels of a fit.
-pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
+pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted> {
     let mut stated = fitted.clone();
     bench.perfected(&mut stated)?;
     // Models without creeping contacts have fewer parameters: the first ones.
@@ -222,7 +137,7 @@ pub(super) fn taken_over(
     bench: &Bench<'_>,
     fitted: &Fitted,
     estimation: &Estimation<'_>,
-) -> Result<Vec<f64>, DiagnoseError> {
+) -> Result<Vec<f64>> {
     let mut values = bench.carried(fitted, estimation);
     bench.begin(estimation, &mut values)?;
     bench.hide(&fitted.members, estimation, &mut values)?;
@@ -234,9 +149,7 @@ pub(super) fn taken_over(
         if estimation.log_likelihood(&values).is_ok() {
             break;
         }
-        for index in 0..estimation.setup().disturbances.len() {
-            values[layout.place(Unknown::Disturbance(index))?] *= 10.0;
-        }
+        scale_process_noise(estimation, &mut values, 10.0)?;
     }
     Ok(values)
 }
@@ -246,7 +159,7 @@ pub(super) fn followed(
     bench: &Bench<'_>,
     fitted: &Fitted,
     estimation: &Estimation<'_>,
-) -> Result<Vec<f64>, DiagnoseError> {
+) -> Result<Vec<f64>> {
     if bench.is_over_windows() {
         taken_over(bench, fitted, estimation)
     } else {
@@ -255,7 +168,7 @@ pub(super) fn followed(
 }
 
 /// Noise of the channels under a hypothesis.
-pub(super) fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> {
+pub(super) fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>> {
     let channels = 0..bench.measured.len();
     let noise = channels.map(|channel| {
         let place = fitted.layout.place(Unknown::Noise(channel))?;

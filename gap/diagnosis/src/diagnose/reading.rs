@@ -6,17 +6,16 @@
 use appell_estimate::Estimation;
 use appell_recordings::{DataSet, Measured, Reading, Role};
 
-use super::DiagnoseError;
-use super::bench::Bench;
+use super::{Bench, Result};
 use crate::effects::EffectModel;
 
 /// The more likely way of reading; that of the data set if there are no such channels.
-pub(super) fn likely(set: &DataSet, effects: &EffectModel) -> Result<Reading, DiagnoseError> {
+pub(super) fn likely(set: &DataSet, effects: &EffectModel) -> Result<Reading> {
     let is_output = |role| matches!(role, Role::Measures(Measured::Output(_)));
     if set.robot.is_none() || !set.channels.iter().any(|own| is_output(own.role)) {
         return Ok(set.reading);
     }
-    let likelihood = |reading: Reading| -> Result<f64, DiagnoseError> {
+    let likelihood = |reading: Reading| -> Result<f64> {
         let set = DataSet {
             reading,
             ..set.clone()

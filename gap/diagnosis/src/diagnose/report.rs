@@ -1,15 +1,14 @@
 //! The gap report, with the names of its format.
 
+use appell_recordings::{DataSet, Spec};
 use nalgebra::DMatrix;
 use serde::Serialize;
 
 pub use super::advice::{Advice, Open};
 use super::calibration::TIED;
 use super::changes::{Changes, Refitted};
-pub use super::pictures::{ForceHistory, ForceLaw, MissingForce, Pictures, Trace};
-pub use super::value::{QUANTILE, Value};
 pub use super::verdict::GapVerdict;
-pub use super::yardstick::Yardstick;
+pub use super::yardstick::{QUANTILE, Value, Yardstick};
 
 /// Name of the hypothesis that nothing in the library explains the gap.
 pub(super) const UNKNOWN: &str = "unknown";
@@ -21,7 +20,7 @@ pub(super) const LAW: &str = "law";
 pub(super) const REST: &str = "unexplained";
 
 /// A hypothesis with its probability.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Hypothesis {
     /// Names of its effects; none for the nominal model, `unknown` for none of the library.
     pub effects: Vec<String>,
@@ -43,10 +42,7 @@ impl Hypothesis {
         Self {
             effects: vec![UNKNOWN.to_owned()],
             probability,
-            same_as: None,
-            log_bayes_factor: None,
-            parameters: Vec::new(),
-            changes: None,
+            ..Self::default()
         }
     }
 
@@ -57,13 +53,8 @@ impl Hypothesis {
 
     /// The values of an effect.
     pub fn values_of(&self, effect: &str) -> impl Iterator<Item = &Value> {
-        let of = move |value: &&Value| {
-            value
-                .name
-                .rsplit_once('.')
-                .is_some_and(|own| own.0 == effect)
-        };
-        self.parameters.iter().filter(of)
+        let own = self.parameters.iter();
+        own.filter(move |value| value.effect() == effect)
     }
 
     /// The size of an effect that is implausibly large, if one is.
@@ -191,7 +182,7 @@ impl Share {
 }
 
 /// Prediction errors on held-out runs, in units of the noise.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the words of the contract")]
 pub struct HowFar {
     pub horizon_s: f64,
@@ -277,7 +268,7 @@ impl Left {
 }
 
 /// A measured law.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Law {
     /// The pseudo-velocity whose equation has the force.
     pub equation: String,
@@ -369,6 +360,23 @@ pub struct Before {
 /// A limit stated by the user, in SI: a column with its smallest and largest value.
 pub type Limit = (String, [f64; 2]);
 
+/// Options of a diagnosis.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Whether to include the data of the plots: traces, and the missing force over its variable.
+    pub pictures: bool,
+    /// Limits of the next experiment; by default it stays near the recorded ranges.
+    pub limits: Vec<Limit>,
+    /// Other specs of the same rig, each a hypothesis of its own.
+    pub alternatives: Vec<Spec>,
+    /// Horizon in s at which the gap is reported; by default 1 s, limited by the length of the runs.
+    pub horizon: Option<f64>,
+    /// Share of the gap of the re-fitted model below which an effect is not reported as a cause; by default 0.02.
+    pub tolerance: Option<f64>,
+    /// Names of effects that the spec contains already, which are no hypotheses.
+    pub present: Vec<String>,
+}
+
 /// An input that separates two hypotheses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
@@ -395,6 +403,83 @@ pub struct Found {
     pub about: String,
     /// Its sites in the mechanism.
     pub sites: Vec<String>,
+}
+
+/// Data of the plots.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pictures {
+    /// The missing force of each equation.
+    pub force_history: ForceHistory,
+    /// Channels of the first held-out run.
+    pub traces: Vec<Trace>,
+    /// The missing force; `None` without a gap in the equations.
+    pub force_law: Option<ForceLaw>,
+    /// Of a robot, the missing torque of each joint over its rate and over its position.
+    pub joints: Vec<[ForceLaw; 2]>,
+}
+
+/// The missing force of each equation over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceHistory {
+    /// Length of a part in s.
+    pub part: f64,
+    /// Runs: file, begin in s, parts.
+    pub runs: Vec<(String, f64, usize)>,
+    /// Equations.
+    pub equations: Vec<MissingForce>,
+}
+
+/// The missing force of one equation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MissingForce {
+    /// Pseudo-velocity.
+    pub name: String,
+    /// Unit of the force.
+    pub unit: String,
+    /// Median of its absolute value in each part of the runs, one after the other.
+    pub medians: Vec<f64>,
+}
+
+/// A channel of a run with its predictions, [`AHEAD`](super::AHEAD) seconds ahead, in the unit of the channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trace {
+    /// File of the run.
+    pub run: String,
+    /// Column.
+    pub column: String,
+    /// Unit.
+    pub unit: String,
+    /// Times in s.
+    pub times: Vec<f64>,
+    /// Measured values.
+    pub measured: Vec<f64>,
+    /// Prediction with the parameters stated by the data set.
+    pub nominal: Vec<f64>,
+    /// Prediction with fitted parameters.
+    pub refitted: Vec<f64>,
+    /// Prediction of the best hypothesis.
+    pub with_effect: Vec<f64>,
+    /// Expected standard deviation of the errors of the best hypothesis.
+    pub deviation: f64,
+}
+
+/// Data and law over a variable: the force in SI, the variable in the unit of the spec.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceLaw {
+    /// The pseudo-velocity whose equation lacks the force.
+    pub equation: String,
+    /// Unit of the force.
+    pub unit: String,
+    /// A state or an input.
+    pub variable: String,
+    /// Its unit.
+    pub variable_unit: String,
+    /// Points along the recordings: variable, force.
+    pub points: Vec<[f64; 2]>,
+    /// Median of the force in each part of the variable.
+    pub medians: Vec<[f64; 2]>,
+    /// The law of the best hypothesis; empty if none acts in the equations.
+    pub law: Vec<[f64; 2]>,
 }
 
 /// The whole report.
@@ -455,6 +540,17 @@ pub struct Report {
 }
 
 impl Report {
+    /// Without results, of a rig.
+    pub(super) fn of(set: &DataSet) -> Self {
+        let robot = set.robot.as_ref();
+        Self {
+            mechanism: set.mechanism.name.clone(),
+            robot: robot.map(|robot| robot.format.word()),
+            locked: robot.map_or_else(Vec::new, |robot| robot.locked.clone()),
+            ..Self::default()
+        }
+    }
+
     /// The most probable hypothesis of the library.
     pub fn leading(&self) -> Option<&Hypothesis> {
         self.which.iter().find(|one| !one.is_unknown())

@@ -1,4 +1,5 @@
-//! Initial delays and lags of all drives, and initial limits of loads and inputs.
+//! The begin of a search for a robot, about the model as stated: initial delays and lags of all drives, and initial
+//! limits of loads and inputs.
 //!
 //! A delay shifts the motion, which is far from linear in it where it is as long as the motion of a servo takes, and
 //! other effects imitate its linear part. A limit has no linear part at all. A few values are therefore tried with the
@@ -7,16 +8,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-use appell_estimate::{Estimation, Innovation, Unknown};
+use appell_estimate::{Estimation, Innovation};
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
-use super::initial::{SizeEstimates, place};
+use super::calibration::{TIED, names};
 use super::scales::exerted;
-use super::sets::Set;
+use super::search::{IMITATED, LEADING, Search};
+use super::sets::{Set, Sets};
+use super::starts::{SizeEstimates, place};
+use super::{Bench, Fitted, Result};
 use crate::effects::{Acts, Part};
 
+/// Number of single effects that are fitted about the model as stated.
+const STRONG: usize = 4;
 /// Values that are tried, in s.
 const TRIED: [f64; 7] = [0.002, 0.005, 0.012, 0.025, 0.045, 0.08, 0.13];
 /// Limits that are tried, relative to the stated value of the first variant.
@@ -30,9 +33,59 @@ const FINER: [f64; 3] = [1.4, 1.2, 1.1];
 /// Smallest factor on the noise levels of the model without them.
 const QUIETEST: f64 = 0.1;
 
+impl Search<'_, '_> {
+    /// Fits sets about the model as stated: refitted parameters may imitate a large effect, far from its optimum.
+    pub(super) fn start_from_stated(&mut self) -> Result<()> {
+        let stated = self.bench.stated()?;
+        let [nominal, from] = [&self.fits[0], &stated].map(|fitted| fitted.fit.log_likelihood);
+        self.stated = Some(from);
+        let scanned = scanned(self.bench, &stated)?;
+        let all = scanned.iter().map(|set| set.log_posterior);
+        let most = all.fold(nominal, f64::max);
+        for set in scanned {
+            // What explains less than the tolerances or another effect needs no start of its own.
+            if set.log_posterior - from > IMITATED * (most - from) {
+                self.take_from(&stated, &set);
+            }
+        }
+        let without = self.log_posterior(&stated);
+        let sets = Sets::about(self.bench, &stated, without)?;
+        for set in self.strong_singles(&sets, without) {
+            self.take_from(&stated, set);
+        }
+        for effects in [None, Some(1), Some(2)] {
+            for set in self.worth_a_fit(&sets, LEADING, effects) {
+                self.take_from(&stated, set);
+            }
+        }
+        Ok(())
+    }
+
+    /// The single effects that promise at least a part of what the best of them promises: to first order another effect
+    /// at the same place may imitate a large one.
+    fn strong_singles<'s>(&self, sets: &'s [Set], without: f64) -> Vec<&'s Set> {
+        let mut told = BTreeSet::new();
+        // Biases and scales of channels are linear.
+        let is_of_channel = |&own: &usize| self.bench.candidate(own).acts.channel().is_some();
+        let singles = sets.iter().filter(|set| {
+            if set.members.iter().any(is_of_channel) {
+                return false;
+            }
+            let names = names(self.bench.effects, &set.members);
+            names.len() == 1 && told.insert(names)
+        });
+        let singles: Vec<&Set> = singles.take(STRONG).collect();
+        let most = singles
+            .first()
+            .map_or(0.0, |set| set.log_posterior - without);
+        let is_strong = |set: &&Set| set.log_posterior - without > IMITATED * most.max(TIED);
+        singles.into_iter().filter(is_strong).collect()
+    }
+}
+
 /// Effects that improve on the model as stated: on the signals of all drives, each with the most likely common value,
 /// and limits.
-pub(super) fn scanned(bench: &Bench<'_>, stated: &Fitted) -> Result<Vec<Set>, DiagnoseError> {
+fn scanned(bench: &Bench<'_>, stated: &Fitted) -> Result<Vec<Set>> {
     let mut sets = Vec::new();
     for members in groups(bench) {
         let mut scan = Scan::of(bench, stated, &members, None);
@@ -93,13 +146,13 @@ impl<'s, 'a> Scan<'s, 'a> {
     }
 
     /// Tries a value; returns whether it is the best one.
-    fn betters(&mut self, value: f64) -> Result<bool, DiagnoseError> {
+    fn betters(&mut self, value: f64) -> Result<bool> {
         self.attempt(value)?;
         Ok(self.value.total_cmp(&value).is_eq())
     }
 
     /// Tries a value; returns its log likelihood. A lag shorter than a step is like a delay, but takes long.
-    fn attempt(&mut self, value: f64) -> Result<f64, DiagnoseError> {
+    fn attempt(&mut self, value: f64) -> Result<f64> {
         let is_lag = |&member: &usize| matches!(self.bench.candidate(member).acts, Acts::Lag(_));
         if value < self.bench.step && self.members.iter().any(is_lag) {
             return Ok(f64::NEG_INFINITY);
@@ -112,7 +165,7 @@ impl<'s, 'a> Scan<'s, 'a> {
     }
 
     /// Tries values about the best one; the effect with the best of them, if it improves on the model as stated.
-    fn finer(mut self, factors: &[f64]) -> Result<Option<Set>, DiagnoseError> {
+    fn finer(mut self, factors: &[f64]) -> Result<Option<Set>> {
         if self.value == 0.0 {
             return Ok(None);
         }
@@ -122,27 +175,25 @@ impl<'s, 'a> Scan<'s, 'a> {
                 self.attempt(centre / factor)?;
             }
         }
-        let setup = self.bench.setup(self.members);
-        let estimation = Estimation::new(&setup, &self.bench.recordings)?;
         Ok(Some(Set {
             sizes: sizes(self.members, self.value),
             log_posterior: self.likelihood,
             members: self.members.to_vec(),
             levels: 1.0,
-            starts: vec![self.shaped(&estimation, self.value)?],
+            starts: vec![self.shaped(self.value)],
         }))
     }
 
     /// The weighted log likelihood with a common value.
-    fn likelihood(&self, value: f64) -> Result<f64, DiagnoseError> {
+    fn likelihood(&self, value: f64) -> Result<f64> {
         let bench = self.bench;
         let setup = bench.setup(self.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let mut values = bench.carried(self.stated, &estimation);
         for sizes in sizes(self.members, value) {
-            place(bench, &estimation, &sizes, &mut values)?;
+            place(bench, &estimation, &sizes, 1.0, &mut values)?;
         }
-        for (place, value) in self.shaped(&estimation, value)? {
+        for (place, value) in self.shaped(value) {
             values[place] = value;
         }
         // With too little noise the filter may diverge.
@@ -150,17 +201,9 @@ impl<'s, 'a> Scan<'s, 'a> {
         Ok(bench.weight * likelihood.unwrap_or(f64::NEG_INFINITY))
     }
 
-    /// The place of the parameter that is tried, with a value.
-    fn shaped(
-        &self,
-        estimation: &Estimation<'_>,
-        value: f64,
-    ) -> Result<Vec<(usize, f64)>, DiagnoseError> {
-        let shape = self.shape.map(|shape| {
-            let place = estimation.layout().place(Unknown::Parameter(shape))?;
-            Ok((place, value))
-        });
-        shape.into_iter().collect()
+    /// The parameter that is tried, with a value.
+    fn shaped(&self, value: f64) -> Vec<(usize, f64)> {
+        self.shape.iter().map(|&shape| (shape, value)).collect()
     }
 }
 
@@ -180,17 +223,13 @@ fn limits(bench: &Bench<'_>) -> Vec<(usize, usize)> {
 
 /// The delays, and the lags, of all drives.
 fn groups(bench: &Bench<'_>) -> Vec<Vec<usize>> {
-    let of = |is_own: fn(Acts) -> bool| -> Vec<usize> {
-        (0..bench.effects.candidates.len())
-            .filter(|&member| {
-                bench.candidate(member).is_of_group() && is_own(bench.candidate(member).acts)
-            })
-            .collect()
-    };
-    let groups = [
-        of(|acts| matches!(acts, Acts::Delay(_))),
-        of(|acts| matches!(acts, Acts::Lag(_))),
-    ];
+    let is_delay: fn(Acts) -> bool = |acts| matches!(acts, Acts::Delay(_));
+    let is_lag: fn(Acts) -> bool = |acts| matches!(acts, Acts::Lag(_));
+    let groups = [is_delay, is_lag].map(|is_own| {
+        let all = bench.effects.candidates.iter().enumerate();
+        let own = all.filter(|(_, own)| own.is_of_group() && is_own(own.acts));
+        own.map(|(member, _)| member).collect::<Vec<usize>>()
+    });
     groups.into_iter().filter(|own| !own.is_empty()).collect()
 }
 

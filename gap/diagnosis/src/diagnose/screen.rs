@@ -7,12 +7,9 @@
 use appell_estimate::{Direction, Estimation, Unknown, in_parallel};
 use nalgebra::{DMatrix, DVector};
 
-use super::DiagnoseError;
 use super::augmented;
-use super::bench::Bench;
-use super::evidence::Fitted;
-use super::gram::{Gram, Normal, whitened};
-use super::nuisance::{moving, priors};
+use super::gram::{Gram, Normal, moving, priors, whitened};
+use super::{Bench, Fitted, Result};
 use crate::effects::{Acts, Part};
 
 /// A candidate after the screen.
@@ -53,121 +50,112 @@ pub(super) fn least(best: f64) -> f64 {
     LEAST_GAIN.max(LEAST_PART * best)
 }
 
-/// All candidates.
-#[derive(Debug, Clone)]
-pub(super) struct Screen {
-    /// The candidates, with the greatest gain first.
-    pub(super) list: Vec<Screened>,
+/// Screens all candidates that are not members of a fit, those with the greatest gain first.
+pub(super) fn screen(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>> {
+    let mut list = first_order(bench, fitted)?;
+    let best = list.first().map_or(0.0, |best| best.gain);
+    list.extend(augmented::screened(
+        bench,
+        fitted,
+        fitted.evidence.by_inputs,
+        best,
+    )?);
+    list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    Ok(list)
 }
 
-impl Screen {
-    /// Screens all candidates that are not members of a fit.
-    pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        let mut screen = Self::first_order(bench, fitted)?;
-        let best = screen.list.first().map_or(0.0, |best| best.gain);
-        let augmented = augmented::screened(bench, fitted, fitted.evidence.by_inputs, best)?;
-        screen.list.extend(augmented);
-        screen.list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        Ok(screen)
-    }
+/// A linearisation about a hypothesis.
+struct Linearised {
+    normal: Normal,
+    /// Number of free directions; those of the candidates come next, then impulses of feedback inputs.
+    free: usize,
+    /// Number of both.
+    directions: usize,
+    columns: Vec<Columns>,
+}
 
-    /// Screens all candidates without an additional coordinate.
-    fn first_order(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
+/// The columns of a candidate.
+struct Columns {
+    candidate: usize,
+    /// The first one, after the free directions.
+    first: usize,
+    /// Which of them are one-sided.
+    is_positive: Vec<bool>,
+}
+
+impl Linearised {
+    /// With the directions of all candidates outside a hypothesis that add no coordinate.
+    fn of(bench: &Bench<'_>, fitted: &Fitted, has_kicks: bool) -> Result<Self> {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
-        let free = moving(&fitted.fit);
-        let (directions, own) = others(bench, fitted, &free);
+        let mut directions = moving(&fitted.fit);
+        let free = directions.len();
+        let mut columns = Vec::new();
+        for candidate in 0..bench.effects.candidates.len() {
+            let own = bench.candidate(candidate);
+            if own.brings.is_some() || fitted.members.contains(&candidate) {
+                continue;
+            }
+            let first = directions.len() - free;
+            let (own, is_positive): (Vec<Direction>, Vec<bool>) =
+                self::directions(bench, candidate).into_iter().unzip();
+            directions.extend(own);
+            columns.push(Columns {
+                candidate,
+                first,
+                is_positive,
+            });
+        }
         let mut values = bench.carried(fitted, &estimation);
         shapes(bench, &mut values, &fitted.members);
-        let tangent = bench
-            .input_innovations
-            .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
-        let normal = Normal::of(
-            &tangent,
-            &whitened(&tangent),
-            bench.weight,
-            &priors(&fitted.fit),
-        );
-        let columns = free.len()..directions.len();
-        let mut nuisances: Vec<usize> = (0..free.len()).collect();
-        let gram = normal.beside(&nuisances, columns.clone());
-        nuisances.extend(directions.len()..tangent.slopes.nrows());
-        let beyond = normal.beside(&nuisances, columns);
-        let for_kicks = fitted.evidence.by_inputs;
-        let all = in_parallel(own, |(candidate, columns)| {
-            let positive = positive(bench, candidate);
-            let one = screened(&gram, candidate, &columns, &positive)?;
-            let beyond = screened(&beyond, candidate, &columns, &positive);
-            let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
-            let by_inputs = (one.gain - beyond).clamp(0.0, for_kicks);
-            Some(one.beyond_inputs(by_inputs))
-        });
-        let mut list: Vec<Screened> = all.into_iter().flatten().collect();
-        list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        Ok(Self { list })
+        let tangent = bench.input_innovations.with_kicks(|kicks| {
+            estimation.tangent(&values, &directions, kicks.filter(|_| has_kicks))
+        })?;
+        let rest = whitened(&tangent);
+        Ok(Self {
+            normal: Normal::of(&tangent, &rest, bench.weight, &priors(&fitted.fit)),
+            free,
+            directions: directions.len(),
+            columns,
+        })
     }
 }
 
-/// Multiplies the process noise among values.
-pub(super) fn quieten(
-    estimation: &Estimation<'_>,
-    values: &mut [f64],
-    levels: f64,
-) -> Result<(), DiagnoseError> {
-    for index in 0..estimation.setup().disturbances.len() {
-        values[estimation.layout().place(Unknown::Disturbance(index))?] *= levels;
-    }
-    Ok(())
+/// Screens all candidates without an additional coordinate.
+fn first_order(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>> {
+    let about = Linearised::of(bench, fitted, true)?;
+    let columns = about.free..about.directions;
+    let mut nuisances: Vec<usize> = (0..about.free).collect();
+    let gram = about.normal.beside(&nuisances, columns.clone());
+    nuisances.extend(about.directions..about.normal.scores.len());
+    let beyond = about.normal.beside(&nuisances, columns);
+    let for_kicks = fitted.evidence.by_inputs;
+    let all = in_parallel(about.columns, |own| {
+        let one = screened(&gram, &own)?;
+        let beyond = screened(&beyond, &own).map_or(0.0, |beyond| beyond.gain);
+        let by_inputs = (one.gain - beyond).clamp(0.0, for_kicks);
+        Some(one.beyond_inputs(by_inputs))
+    });
+    let mut list: Vec<Screened> = all.into_iter().flatten().collect();
+    list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    Ok(list)
 }
 
 /// Candidates whose sensitivities about a fit are non-zero, but linearly dependent on those of its free parameters.
-pub(super) fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<usize>, DiagnoseError> {
-    let setup = bench.whole_setup(&fitted.members);
-    let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let free = moving(&fitted.fit);
-    let (directions, own) = others(bench, fitted, &free);
-    let mut values = bench.carried(fitted, &estimation);
-    shapes(bench, &mut values, &fitted.members);
-    let tangent = estimation.tangent(&values, &directions, None)?;
-    let normal = Normal::of(
-        &tangent,
-        &whitened(&tangent),
-        bench.weight,
-        &priors(&fitted.fit),
-    );
-    let nuisances: Vec<usize> = (0..free.len()).collect();
-    let gram = normal.beside(&nuisances, free.len()..directions.len());
-    let is_imitated = |(_, columns): &(usize, Vec<usize>)| {
-        let is_there = |column: &usize| {
-            let column = free.len() + column;
-            normal.squares[(column, column)] > 0.0
-        };
-        (columns.iter()).all(|column| is_there(column) && gram.is_imitated[*column])
+pub(super) fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<usize>> {
+    let about = Linearised::of(bench, fitted, false)?;
+    let nuisances: Vec<usize> = (0..about.free).collect();
+    let gram = about
+        .normal
+        .beside(&nuisances, about.free..about.directions);
+    let is_imitated = |own: &Columns| {
+        (own.first..own.first + own.is_positive.len()).all(|column| {
+            let place = about.free + column;
+            about.normal.squares[(place, place)] > 0.0 && gram.is_imitated[column]
+        })
     };
-    let imitated = own.into_iter().filter(is_imitated);
-    Ok(imitated.map(|(candidate, _)| candidate).collect())
-}
-
-/// The free directions, then those of all candidates outside a hypothesis; and the columns of each candidate after the
-/// free ones.
-fn others(
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    free: &[Direction],
-) -> (Vec<Direction>, Vec<(usize, Vec<usize>)>) {
-    let mut directions = free.to_vec();
-    let mut columns: Vec<(usize, Vec<usize>)> = Vec::new();
-    for candidate in 0..bench.effects.candidates.len() {
-        let own = bench.candidate(candidate);
-        if own.brings.is_some() || fitted.members.contains(&candidate) {
-            continue;
-        }
-        let first = directions.len();
-        directions.extend(self::directions(bench, candidate));
-        let columns_of = first - free.len()..directions.len() - free.len();
-        columns.push((candidate, columns_of.collect()));
-    }
-    (directions, columns)
+    let imitated = about.columns.iter().filter(|own| is_imitated(own));
+    Ok(imitated.map(|own| own.candidate).collect())
 }
 
 /// Sets candidates that are not members to zero size, with the shapes of their specs.
@@ -186,74 +174,57 @@ pub(super) fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
     }
 }
 
-/// The directions of a candidate at zero size.
-pub(super) fn directions(bench: &Bench<'_>, candidate: usize) -> Vec<Direction> {
-    let candidate = bench.candidate(candidate);
-    let value = |unknown| vec![Direction::Value(unknown)];
+/// The directions of a candidate at zero size, and whether each is one-sided.
+pub(super) fn directions(bench: &Bench<'_>, candidate: usize) -> Vec<(Direction, bool)> {
+    let (candidate, info) = (bench.candidate(candidate), bench.effects.info());
+    let value = |unknown| vec![(Direction::Value(unknown), false)];
+    let of_size = |index: usize| {
+        let is_positive = info.parameters[index].range[0] >= 0.0;
+        (Direction::Value(Unknown::Parameter(index)), is_positive)
+    };
     match candidate.acts {
         Acts::Items => bench
             .own(candidate)
             .into_iter()
             .filter(|(_, part)| !part.is_shape())
-            .map(|(index, _)| Direction::Value(Unknown::Parameter(index)))
+            .map(|(index, _)| of_size(index))
             .collect(),
         Acts::Parameter(index) => value(Unknown::Parameter(index)),
-        Acts::Lag(input) | Acts::Delay(input) => vec![Direction::LateInput(input)],
+        Acts::Lag(input) | Acts::Delay(input) => vec![(Direction::LateInput(input), true)],
         Acts::Bias(channel) => value(Unknown::Bias(channel)),
         Acts::Scale(channel) => value(Unknown::Scale(channel)),
-        Acts::Late(channel) | Acts::Slow(channel) => vec![Direction::LateChannel(channel)],
-    }
-}
-
-/// Which directions are one-sided.
-pub(super) fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
-    let candidate = bench.candidate(candidate);
-    let info = bench.effects.info();
-    match candidate.acts {
-        Acts::Items => bench
-            .own(candidate)
-            .into_iter()
-            .filter(|(_, part)| !part.is_shape())
-            .map(|(index, _)| info.parameters[index].range[0] >= 0.0)
-            .collect(),
-        Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_) => vec![true],
-        Acts::Parameter(_) | Acts::Bias(_) | Acts::Scale(_) => vec![false],
+        Acts::Late(channel) | Acts::Slow(channel) => vec![(Direction::LateChannel(channel), true)],
     }
 }
 
 /// The best step along the columns of a candidate, without one-sided ones of the wrong sign.
-fn screened(
-    gram: &Gram,
-    candidate: usize,
-    columns: &[usize],
-    positive: &[bool],
-) -> Option<Screened> {
-    let seen = |place: &usize| !gram.is_imitated[columns[*place]];
-    let mut open: Vec<usize> = (0..columns.len()).filter(seen).collect();
+fn screened(gram: &Gram, own: &Columns) -> Option<Screened> {
+    let (count, column) = (own.is_positive.len(), |place: usize| own.first + place);
+    let seen = |place: &usize| !gram.is_imitated[column(*place)];
+    let mut open: Vec<usize> = (0..count).filter(seen).collect();
     loop {
         if open.is_empty() {
             return None;
         }
         let part = DMatrix::from_fn(open.len(), open.len(), |i, j| {
-            gram.squares[(columns[open[i]], columns[open[j]])]
+            gram.squares[(column(open[i]), column(open[j]))]
         });
-        let right = DVector::from_fn(open.len(), |i, _| -gram.scores[columns[open[i]]]);
+        let right = DVector::from_fn(open.len(), |i, _| -gram.scores[column(open[i])]);
         let factor = part.cholesky()?;
         let step = factor.solve(&right);
-        let against = (0..open.len()).find(|&i| positive[open[i]] && step[i] <= 0.0);
+        let against = (0..open.len()).find(|&i| own.is_positive[open[i]] && step[i] <= 0.0);
         if let Some(place) = against {
             open.remove(place);
             continue;
         }
         let inverse = factor.inverse();
-        let mut sizes = vec![0.0; columns.len()];
-        let mut deviations = vec![0.0; columns.len()];
-        for (place, &column) in open.iter().enumerate() {
-            sizes[column] = step[place];
-            deviations[column] = inverse[(place, place)].sqrt();
+        let [mut sizes, mut deviations] = [vec![0.0; count], vec![0.0; count]];
+        for (place, &direction) in open.iter().enumerate() {
+            sizes[direction] = step[place];
+            deviations[direction] = inverse[(place, place)].sqrt();
         }
         return Some(Screened {
-            candidate,
+            candidate: own.candidate,
             gain: 0.5 * right.dot(&step),
             sizes,
             deviations,

@@ -3,31 +3,23 @@
 //! All sets are evaluated to first order about the nominal model, and the best of them fitted; then again about the best
 //! fit, where sensitivities differ, until no better set is found. The fits of all sets have the same stopping rule.
 
-mod stated;
-
 use std::collections::BTreeSet;
 
 use appell_estimate::Estimation;
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::calibration::TIED;
-use super::evidence::Fitted;
-use super::initial::place;
-use super::prior::{names, prior};
-use super::screen::quieten;
+use super::calibration::{TIED, names, prior};
 use super::sets::{Set, Sets, is_fixed};
+use super::starts::{place, scale_process_noise};
+use super::{Bench, DiagnoseError, Fitted, Result};
 use crate::effects::Acts;
 
 /// Number of sets that are fitted before the next linearisation, and of rivals that are fitted about the best one.
-const LEADING: usize = 2;
+pub(super) const LEADING: usize = 2;
 const RIVALS: usize = 6;
 /// The same for a robot, whose fits take long.
 const FEW_RIVALS: usize = 2;
 /// Number of single effects about which sets are also evaluated.
 const SINGLES: usize = 6;
-/// Number of single effects that are fitted about the model as stated.
-const STRONG: usize = 4;
 /// Largest number of linearisations.
 const ROUNDS: usize = 4;
 /// Sets are fitted if their expected log posterior is below the best one by at most this, plus a part of the gain of
@@ -40,9 +32,9 @@ const PARTS: [f64; 4] = [0.5, 0.2, 0.05, 0.01];
 /// Log posterior of the values below that of the best hypothesis from which a slow search is given up.
 pub(super) const SLACK: f64 = 40.0;
 /// Part of the gain of the re-fitted parameters that a delay of all drives has to reach with the others as stated, of the
-/// gain of the best single effect that others have to promise, and of the gain of the best hypothesis that a single effect
-/// of a robot has to reach for sets about it.
-const IMITATED: f64 = 0.5;
+/// gain of the best single effect that others have to promise, and of the gain of the best hypothesis that a single
+/// effect of a robot has to reach for sets about it.
+pub(super) const IMITATED: f64 = 0.5;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters are not identifiable";
 
@@ -91,10 +83,7 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Fits sets about the nominal model, then about the best fits. `look` validates the best hypothesis of each
     /// round; returns whether none of them was rejected.
-    pub(super) fn run(
-        &mut self,
-        mut look: impl FnMut(&Fitted) -> Look,
-    ) -> Result<bool, DiagnoseError> {
+    pub(super) fn run(&mut self, mut look: impl FnMut(&Fitted) -> Look) -> Result<bool> {
         let mut first: Vec<Set> = Vec::new();
         let mut referred: BTreeSet<Vec<usize>> = BTreeSet::new();
         let rivals = if self.bench.is_of_robot {
@@ -158,7 +147,7 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// Adds the most promising effects to the best hypothesis while that improves it, and fits the rivals of the result.
-    pub(super) fn better(&mut self) -> Result<(), DiagnoseError> {
+    pub(super) fn better(&mut self) -> Result<()> {
         for _ in 0..ROUNDS {
             let best = self.best().unwrap_or(0);
             let log_posterior = self.log_posterior(&self.fits[best]);
@@ -180,10 +169,7 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Evaluates sets about the best single effects as well: a linearisation about a wrong effect may mask a set of
     /// others. Returns whether they lead to a better hypothesis.
-    fn led_on_by_singles(
-        &mut self,
-        referred: &mut BTreeSet<Vec<usize>>,
-    ) -> Result<bool, DiagnoseError> {
+    fn led_on_by_singles(&mut self, referred: &mut BTreeSet<Vec<usize>>) -> Result<bool> {
         let Some(best) = self.best().filter(|_| self.bench.is_over_windows()) else {
             return Ok(false);
         };
@@ -208,10 +194,8 @@ impl<'b, 'a> Search<'b, 'a> {
             }
             let log_posterior = self.log_posterior(&single);
             let sets = Sets::about(self.bench, &single, log_posterior)?;
-            let from = self
-                .fits
-                .iter()
-                .position(|own| own.members == single.members);
+            let mut fits = self.fits.iter();
+            let from = fits.position(|own| own.members == single.members);
             // More effects beside a single one have to gain by it.
             let gains = |set: &&Set| {
                 let holds = single.members.iter().all(|own| set.members.contains(own));
@@ -226,7 +210,12 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// The most promising sets that are not fitted yet, of any or of a given number of effects.
-    fn worth_a_fit<'s>(&self, sets: &'s [Set], most: usize, size: Option<usize>) -> Vec<&'s Set> {
+    pub(super) fn worth_a_fit<'s>(
+        &self,
+        sets: &'s [Set],
+        most: usize,
+        size: Option<usize>,
+    ) -> Vec<&'s Set> {
         let log = |fit: usize| self.log_posterior(&self.fits[fit]);
         let fitted = self.best().map_or(f64::NEG_INFINITY, log);
         let best = sets
@@ -274,11 +263,7 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// Whether the best hypothesis is valid, if necessary with the candidate that it lacks.
-    fn goes_on(
-        &mut self,
-        best: usize,
-        look: &mut impl FnMut(&Fitted) -> Look,
-    ) -> Result<bool, DiagnoseError> {
+    fn goes_on(&mut self, best: usize, look: &mut impl FnMut(&Fitted) -> Look) -> Result<bool> {
         let lacks = match look(&self.fits[best]) {
             Look::Holds => return Ok(true),
             Look::Refuted => return Ok(false),
@@ -304,7 +289,7 @@ impl<'b, 'a> Search<'b, 'a> {
         self.take_from(&from, set);
     }
 
-    fn take_from(&mut self, from: &Fitted, set: &Set) {
+    pub(super) fn take_from(&mut self, from: &Fitted, set: &Set) {
         let members = set.members.clone();
         if self.settled.contains(&members) {
             return;
@@ -363,7 +348,7 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    fn fitted(&self, from: &Fitted, set: &Set) -> Result<Fitted, DiagnoseError> {
+    fn fitted(&self, from: &Fitted, set: &Set) -> Result<Fitted> {
         let bench = self.bench;
         let setup = bench.setup(&set.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
@@ -374,7 +359,7 @@ impl<'b, 'a> Search<'b, 'a> {
                 self.take_away(member, from, &estimation, &mut start);
             }
         }
-        quieten(&estimation, &mut start, set.levels)?;
+        scale_process_noise(&estimation, &mut start, set.levels)?;
         self.place_all(from, set, &carried, &estimation, &mut start)?;
         let new: Vec<usize> = (set.members.iter().copied())
             .filter(|member| !from.members.contains(member))
@@ -385,9 +370,21 @@ impl<'b, 'a> Search<'b, 'a> {
                 start[place] = value;
             }
             bench.hide(&new, &estimation, &mut start)?;
-            bench.fit_above(self.floor(&set.members), &set.members, &estimation, &start)
+            let effort = bench.above(self.floor(&set.members));
+            bench.fit(effort, &set.members, &estimation, &start)
         });
-        let mut fitted = best_fit(fits)?;
+        // The fit with the greatest evidence, or the last error if all failed.
+        let (found, mut failed): (Vec<_>, Vec<_>) = fits.partition(Result::is_ok);
+        let greater = |best: Fitted, next: Fitted| {
+            if next.evidence.log() > best.evidence.log() {
+                next
+            } else {
+                best
+            }
+        };
+        let best = found.into_iter().flatten().reduce(greater);
+        let failure = failed.pop().and_then(Result::err);
+        let mut fitted = best.ok_or_else(|| failure.unwrap_or(DiagnoseError::NothingToFit))?;
         self.count_late(&mut fitted)?;
         Ok(fitted)
     }
@@ -401,13 +398,13 @@ impl<'b, 'a> Search<'b, 'a> {
         carried: &[f64],
         estimation: &Estimation<'_>,
         start: &mut [f64],
-    ) -> Result<(), DiagnoseError> {
+    ) -> Result<()> {
         let bench = self.bench;
-        let put = |part: f64, start: &mut [f64]| -> Result<(), DiagnoseError> {
+        let put = |part: f64, start: &mut [f64]| -> Result<()> {
             for sizes in &set.sizes {
                 let is_known = from.members.contains(&sizes.candidate);
                 let part = if is_known { 1.0 } else { part };
-                place(bench, estimation, &sizes.times(part), start)?;
+                place(bench, estimation, sizes, part, start)?;
                 if is_known {
                     // Its shape has been estimated already.
                     for (index, part) in bench.own(bench.candidate(sizes.candidate)) {
@@ -476,10 +473,10 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// A delayed channel loses rows: its likelihood is that of another hypothesis plus the gain on the remaining rows. Over
-    /// windows, which have few rows, that is the best one without delayed channels, so that what both explain counts on all
-    /// rows; otherwise it is the nominal model.
-    pub(super) fn count_late(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
+    /// A delayed channel loses rows: its likelihood is that of another hypothesis plus the gain on the remaining rows.
+    /// Over windows, which have few rows, that is the best one without delayed channels, so that what both explain
+    /// counts on all rows; otherwise it is the nominal model.
+    pub(super) fn count_late(&self, fitted: &mut Fitted) -> Result<()> {
         if !self.bench.is_late(&fitted.members) {
             return Ok(());
         }
@@ -529,7 +526,7 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// A hypothesis without a member, from the optimum with it.
-    fn fitted_without(&self, whole: &Fitted, idle: usize) -> Result<Fitted, DiagnoseError> {
+    fn fitted_without(&self, whole: &Fitted, idle: usize) -> Result<Fitted> {
         let bench = self.bench;
         let mut members = whole.members.clone();
         members.retain(|&own| own != idle);
@@ -537,7 +534,8 @@ impl<'b, 'a> Search<'b, 'a> {
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let mut start = bench.carried(whole, &estimation);
         self.take_away(idle, whole, &estimation, &mut start);
-        let mut fitted = bench.fit_above(self.floor(&members), &members, &estimation, &start)?;
+        let effort = bench.above(self.floor(&members));
+        let mut fitted = bench.fit(effort, &members, &estimation, &start)?;
         self.count_late(&mut fitted)?;
         Ok(fitted)
     }
@@ -552,28 +550,5 @@ impl<'b, 'a> Search<'b, 'a> {
     /// Logarithm of the probability, up to a constant.
     pub(super) fn log_posterior(&self, fitted: &Fitted) -> f64 {
         fitted.evidence.log() + prior(self.bench.effects, &fitted.members)
-    }
-}
-
-/// The fit with the greatest evidence, or the last error if all failed.
-fn best_fit(
-    fits: impl Iterator<Item = Result<Fitted, DiagnoseError>>,
-) -> Result<Fitted, DiagnoseError> {
-    let (mut best, mut failure) = (None::<Fitted>, None);
-    for fit in fits {
-        match fit {
-            Ok(fit) => {
-                let log = fit.evidence.log();
-                if best.as_ref().is_none_or(|best| log > best.evidence.log()) {
-                    best = Some(fit);
-                }
-            }
-            Err(error) => failure = Some(error),
-        }
-    }
-    match (best, failure) {
-        (Some(best), _) => Ok(best),
-        (None, Some(error)) => Err(error),
-        (None, None) => Err(DiagnoseError::NothingToFit),
     }
 }

@@ -17,14 +17,13 @@ use appell_estimate::{Direction, Estimation, Unknown, in_parallel};
 
 pub(super) use self::columns::is_fixed;
 use self::columns::{columns, nuisances};
-use super::DiagnoseError;
 use super::augmented;
-use super::bench::Bench;
-use super::evidence::{Fitted, occam};
+use super::calibration::{counts, of_components, of_count, prior, subsets};
+use super::evidence::occam;
 use super::gram::{Gram, Solved};
-use super::initial::SizeEstimates;
-use super::prior::{counts, of_components, of_count, prior, subsets};
-use super::screen::{Screened, directions, quieten, shapes};
+use super::screen::{Screened, directions, shapes};
+use super::starts::{SizeEstimates, scale_process_noise};
+use super::{Bench, DiagnoseError, Fitted, Result};
 use crate::effects::Acts;
 
 /// Process noise relative to the fitted one.
@@ -66,12 +65,11 @@ struct Choice {
 struct Column {
     candidate: usize,
     /// Index among the directions of its candidate.
-    direction: usize,
+    place: usize,
+    direction: Direction,
     is_positive: bool,
     /// Its largest size.
     most: f64,
-    /// The value to which it is the sensitivity, if it is one.
-    unknown: Option<Unknown>,
     /// Prior standard deviation of its size, if any.
     known: Option<f64>,
     /// Its size in the fit of the linearisation.
@@ -130,7 +128,7 @@ impl<'b, 'a> Sets<'b, 'a> {
         bench: &'b Bench<'a>,
         fitted: &Fitted,
         log_posterior: f64,
-    ) -> Result<Vec<Set>, DiagnoseError> {
+    ) -> Result<Vec<Set>> {
         let sets = Self::of(bench, fitted, log_posterior)?;
         let mut all = sets.all();
         all.extend(sets.with_coordinates(fitted, log_posterior)?);
@@ -138,21 +136,17 @@ impl<'b, 'a> Sets<'b, 'a> {
         Ok(all)
     }
 
-    fn of(
-        bench: &'b Bench<'a>,
-        fitted: &Fitted,
-        log_posterior: f64,
-    ) -> Result<Self, DiagnoseError> {
+    fn of(bench: &'b Bench<'a>, fitted: &Fitted, log_posterior: f64) -> Result<Self> {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let mut values = bench.carried(fitted, &estimation);
         shapes(bench, &mut values, &fitted.members);
         let is_fixed = |&member: &usize| is_fixed(bench, member);
         let fixed: Vec<usize> = fitted.members.iter().copied().filter(is_fixed).collect();
-        let (columns, of_columns) = columns(bench, fitted, &estimation, &values)?;
-        let nuisances = nuisances(bench, fitted, &of_columns, &columns);
+        let columns = columns(bench, fitted, &estimation, &values)?;
+        let nuisances = nuisances(bench, fitted, &columns);
         let directions: Vec<Direction> = (nuisances.iter().map(|one| one.direction))
-            .chain(of_columns)
+            .chain(columns.iter().map(|one| one.direction))
             .collect();
         let scales: &[f64] = if bench.is_over_windows() {
             &LEVELS[..1]
@@ -161,33 +155,25 @@ impl<'b, 'a> Sets<'b, 'a> {
         };
         let levels = in_parallel(scales.to_vec(), |scale| {
             let mut values = values.clone();
-            quieten(&estimation, &mut values, scale)?;
+            scale_process_noise(&estimation, &mut values, scale)?;
             let tangent = bench
                 .input_innovations
                 .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
             Ok::<Level, DiagnoseError>(Level::of(bench, scale, &tangent, &nuisances, &columns))
         });
         // With less process noise the filter may diverge.
-        let mut found = Vec::new();
-        let mut failure = None;
-        for level in levels {
-            match level {
-                Ok(level) => found.push(level),
-                Err(error) => failure = Some(error),
-            }
-        }
-        if let (true, Some(failure)) = (found.is_empty(), failure) {
+        let (found, mut failed): (Vec<_>, Vec<_>) = levels.into_iter().partition(Result::is_ok);
+        if let (true, Some(Err(failure))) = (found.is_empty(), failed.pop()) {
             return Err(failure);
         }
-        let of_fixed = fixed.iter().map(|&own| bench.candidate(own).name());
-        let of_fixed: BTreeSet<String> = of_fixed.collect();
-        let of_fixed: f64 = of_fixed
-            .iter()
-            .map(|name| of_components(bench.effects, name))
-            .sum();
+        let names: BTreeSet<String> = (fixed.iter())
+            .map(|&own| bench.candidate(own).name())
+            .collect();
+        let of_fixed = names.iter().map(|name| of_components(bench.effects, name));
+        let of_fixed: f64 = of_fixed.sum();
         let mut sets = Self {
             bench,
-            levels: found,
+            levels: found.into_iter().flatten().collect(),
             choices: Vec::new(),
             prior: (0..=TOGETHER * most_counts(bench))
                 .map(|effects| of_count(bench.effects, effects + fixed.len()) + of_fixed)
@@ -201,10 +187,8 @@ impl<'b, 'a> Sets<'b, 'a> {
         let own = |column: &usize| fitted.members.contains(&sets.columns[*column].candidate);
         let own: Vec<usize> = (0..sets.columns.len()).filter(own).collect();
         let own_prior = prior(bench.effects, &fitted.members);
-        let value = sets
-            .levels
-            .first()
-            .and_then(|level| sets.value(level, &own, own_prior));
+        let level = sets.levels.first();
+        let value = level.and_then(|level| sets.value(level, &own, own_prior));
         sets.offset = log_posterior - value.map_or(log_posterior, |(value, ..)| value);
         Ok(sets)
     }
@@ -213,15 +197,10 @@ impl<'b, 'a> Sets<'b, 'a> {
     fn choices(&self) -> Vec<Choice> {
         let mut by_candidate: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (place, column) in self.columns.iter().enumerate() {
-            if self
-                .levels
-                .iter()
-                .any(|level| !level.gram.is_imitated[place])
-            {
-                by_candidate
-                    .entry(column.candidate)
-                    .or_default()
-                    .push(place);
+            let mut levels = self.levels.iter();
+            if levels.any(|level| !level.gram.is_imitated[place]) {
+                let own = by_candidate.entry(column.candidate).or_default();
+                own.push(place);
             }
         }
         let mut choices: Vec<Choice> = Vec::new();
@@ -229,15 +208,12 @@ impl<'b, 'a> Sets<'b, 'a> {
         for (candidate, columns) in by_candidate {
             let own = self.bench.candidate(candidate);
             if own.is_component {
-                vectors
-                    .entry(own.name())
-                    .or_default()
-                    .push((candidate, columns));
+                let vector = vectors.entry(own.name()).or_default();
+                vector.push((candidate, columns));
             } else {
-                let name = own.name();
                 choices.push(Choice {
                     counts: own.counts,
-                    log_prior: of_components(self.bench.effects, &name),
+                    log_prior: of_components(self.bench.effects, &own.name()),
                     candidates: vec![candidate],
                     columns,
                 });
@@ -340,23 +316,20 @@ impl<'b, 'a> Sets<'b, 'a> {
         }
         let log_prior =
             self.prior[counts] + choices.iter().map(|choice| choice.log_prior).sum::<f64>();
-        let valued = self
-            .levels
-            .iter()
-            .filter_map(|level| Some((level, self.value(level, &columns, log_prior)?)));
+        let levels = self.levels.iter();
+        let valued =
+            levels.filter_map(|level| Some((level, self.value(level, &columns, log_prior)?)));
         let (level, (value, solved)) = valued.max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
-        let mut members: Vec<usize> = choices
-            .iter()
-            .flat_map(|own| own.candidates.clone())
-            .collect();
+        let members = choices.iter().flat_map(|own| own.candidates.clone());
+        let mut members: Vec<usize> = members.collect();
         let sizes = members.iter().map(|&candidate| {
             let count = directions(self.bench, candidate).len();
             let [mut values, mut deviations] = [vec![0.0; count], vec![0.0; count]];
             for (place, &column) in columns.iter().enumerate() {
                 let column = &self.columns[column];
                 if column.candidate == candidate {
-                    values[column.direction] = solved.sizes[place];
-                    deviations[column.direction] = solved.deviations[place];
+                    values[column.place] = solved.sizes[place];
+                    deviations[column.place] = solved.deviations[place];
                 }
             }
             SizeEstimates {
@@ -403,30 +376,27 @@ impl<'b, 'a> Sets<'b, 'a> {
         }
         let mut value = log_likelihood + solved.log_volume + columns.len() as f64 * spread.ln();
         for (place, &column) in columns.iter().enumerate() {
-            let Column {
-                is_positive, known, ..
-            } = self.columns[column];
+            let own = &self.columns[column];
             let (size, deviation) = (solved.sizes[place], solved.deviations[place]);
             let hardware = &self.bench.hardware;
-            // Directions that are no values have no further prior.
-            let unknown = self.columns[column]
-                .unknown
-                .unwrap_or(Unknown::Disturbance(0));
-            let of_error = hardware.of_error(unknown, size).filter(|_| known.is_some());
-            value += match (of_error, known) {
+            let unknown = match own.direction {
+                Direction::Value(unknown) => unknown,
+                // Directions that are no values have no further prior.
+                _ => Unknown::Disturbance(0),
+            };
+            let of_error = hardware
+                .of_error(unknown, size)
+                .filter(|_| own.known.is_some());
+            value += match (of_error, own.known) {
                 (Some((density, _)), Some(wrong)) => density + 0.5 * (size / wrong).powi(2),
-                _ => hardware.of_size(unknown, size, deviation, !is_positive),
+                _ => hardware.of_size(unknown, size, deviation, !own.is_positive),
             };
         }
         Some((value + log_prior, solved))
     }
 
     /// Adds one candidate with an additional coordinate to the fit: these have no sensitivities.
-    fn with_coordinates(
-        &self,
-        fitted: &Fitted,
-        log_posterior: f64,
-    ) -> Result<Vec<Set>, DiagnoseError> {
+    fn with_coordinates(&self, fitted: &Fitted, log_posterior: f64) -> Result<Vec<Set>> {
         let bench = self.bench;
         let for_kicks = fitted.evidence.by_inputs;
         let singles = (0..self.choices.len()).filter_map(|place| {

@@ -2,25 +2,19 @@
 
 use appell_estimate::{Estimation, Unknown};
 
-use super::DiagnoseError;
+use super::Result;
 use crate::identify::Problem;
 
 /// Maximises the likelihood over the process noise of each equation in turn, by powers of ten: the levels of different
 /// equations are nearly independent.
-pub(super) fn level(
-    estimation: &Estimation<'_>,
-    problem: &mut Problem,
-) -> Result<(), DiagnoseError> {
+pub(super) fn level(estimation: &Estimation<'_>, problem: &mut Problem) -> Result<()> {
     let layout = estimation.layout();
     let mut best = estimation.log_likelihood(&problem.start)?;
     for index in 0..estimation.setup().disturbances.len() {
         let place = layout.place(Unknown::Disturbance(index))?;
-        let Some([low, high]) = problem
-            .levels
-            .iter()
-            .find(|free| free.unknown == Unknown::Disturbance(index))
-            .map(|free| free.range)
-        else {
+        let mut levels = problem.levels.iter();
+        let level = levels.find(|free| free.unknown == Unknown::Disturbance(index));
+        let Some([low, high]) = level.map(|free| free.range) else {
             continue;
         };
         for factor in [10.0, 0.1] {
@@ -44,10 +38,7 @@ pub(super) fn level(
 }
 
 /// Initial standard deviations of the states: typical sizes of unmeasured ones.
-pub(super) fn sizes(
-    estimation: &Estimation<'_>,
-    problem: &Problem,
-) -> Result<Vec<f64>, DiagnoseError> {
+pub(super) fn sizes(estimation: &Estimation<'_>, problem: &Problem) -> Result<Vec<f64>> {
     let layout = estimation.layout();
     let states = 0..estimation.setup().model.info().state_len();
     let size = |state| {

@@ -1,12 +1,12 @@
-//! Gains of actuators and scales of encoders with a tolerance (`gain_std`, `scale_std` of a channel): relative errors that
-//! become parameters of the spec. Like those they are fitted within their tolerances in every hypothesis, and a larger error
-//! is a hypothesis, which keeps the name of its effect.
+//! Gains of actuators and scales of encoders with a tolerance (`gain_std`, `scale_std` of a channel): relative errors
+//! that become parameters of the spec. Like those they are fitted within their tolerances in every hypothesis, and a
+//! larger error is a hypothesis, which keeps the name of its effect.
 
 use appell_recordings::{Channel, DataSet, Role, Spec};
 use appell_spec::edit::set_deviations;
 use appell_spec::mechanism::InputId;
 
-use super::DiagnoseError;
+use super::Result;
 use crate::effects::{Candidate, ModelError, with_candidates};
 
 /// A data set whose spec has these relative errors as parameters, and the candidates with which they were added.
@@ -17,9 +17,9 @@ pub(super) struct Stated {
 
 impl Stated {
     /// `None` where no line states such a tolerance.
-    pub(super) fn of(set: &DataSet, all: &[Candidate]) -> Result<Option<Self>, DiagnoseError> {
+    pub(super) fn of(set: &DataSet, all: &[Candidate]) -> Result<Option<Self>> {
         let (mut candidates, mut places) = (Vec::new(), Vec::new());
-        let mut deviations = Vec::new();
+        let mut tolerances: Vec<(&str, f64)> = Vec::new();
         for (place, channel) in set.channels.iter().enumerate() {
             let of = site(set, channel).zip(channel.tolerance);
             let is_own = |own: &&Candidate, site| {
@@ -29,7 +29,7 @@ impl Stated {
                 && let Some(own) = all.iter().find(|own| is_own(own, site))
             {
                 candidates.push(own.clone());
-                deviations.push(std);
+                tolerances.push((&own.parameters[0].0, std));
                 places.push(place);
             }
         }
@@ -37,9 +37,6 @@ impl Stated {
             return Ok(None);
         }
         let text = with_candidates(&set.spec.text, &candidates).map_err(ModelError::from)?;
-        let names = candidates.iter().map(|own| own.parameters[0].0.as_str());
-        let names: Vec<&str> = names.collect();
-        let tolerances: Vec<(&str, f64)> = names.iter().copied().zip(deviations).collect();
         let text = set_deviations(&text, &tolerances).map_err(ModelError::from)?;
         let file = set.spec.file.clone();
         let mut set = set.rebound(&Spec { file, text })?;

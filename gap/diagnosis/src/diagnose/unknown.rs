@@ -8,23 +8,18 @@
 //! A drift has to be the same in every run.
 
 mod dependence;
-mod hysteresis;
+mod hidden;
 mod memory;
 mod series;
-mod swing;
-mod trace;
 
 use appell_estimate::{Along, Disturbance, Estimation, Shapes, in_parallel};
 use appell_runtime::model::At;
 
-use super::DiagnoseError;
-use super::bench::Bench;
 use super::calibration::TIED;
-use super::evidence::Fitted;
 use super::evidence::log_sum;
-use super::gram::ByRun;
-use super::nuisance::{moving, priors};
-use super::screen::quieten;
+use super::gram::{ByRun, moving, priors};
+use super::starts::scale_process_noise;
+use super::{Bench, Fitted, Hint, Result};
 use crate::effects::Memory;
 
 pub(super) use dependence::Dependence;
@@ -49,12 +44,7 @@ pub(super) struct Unnamed {
     /// Its variable, also in words.
     pub(super) on: On,
     pub(super) variable: String,
-    /// Gain in log-likelihood.
-    pub(super) gain: f64,
-    /// Gain on runs to which it was not fitted.
-    pub(super) cross_validated: f64,
-    /// Logarithm of the Bayes factor for it.
-    pub(super) log_bayes_factor: f64,
+    pub(super) gains: LawGain,
 }
 
 /// The variable of a law.
@@ -78,10 +68,7 @@ pub(super) struct Leftover {
 }
 
 /// The laws for the residual of a hypothesis; `None` if no law generalises to other runs.
-pub(super) fn leftover(
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-) -> Result<Option<Leftover>, DiagnoseError> {
+pub(super) fn leftover(bench: &Bench<'_>, fitted: &Fitted) -> Result<Option<Leftover>> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let mut families = [const { Family::new() }; 2];
@@ -102,7 +89,7 @@ pub(super) fn leftover(
     // Over windows there is none.
     let levels = if bench.is_over_windows() { 0 } else { LEVELS };
     for _ in 0..levels {
-        quieten(&estimation, &mut quiet.fit.values, QUIETER)?;
+        scale_process_noise(&estimation, &mut quiet.fit.values, QUIETER)?;
         // With less process noise the filter may diverge.
         let Ok(gains) = of_variables(bench, &estimation, &quiet, &kinds, &mut base, &mut families)
         else {
@@ -147,7 +134,7 @@ fn of_variables(
     kinds: &[(Dependence<'_>, Along)],
     base: &mut Option<f64>,
     [smooth, single]: &mut [Family; 2],
-) -> Result<Vec<f64>, DiagnoseError> {
+) -> Result<Vec<f64>> {
     let mut gains = vec![f64::NEG_INFINITY; kinds.len()];
     for batch in batches(estimation, kinds) {
         let along = kinds[batch[0]].1;
@@ -209,10 +196,7 @@ fn batches(estimation: &Estimation<'_>, kinds: &[(Dependence<'_>, Along)]) -> Ve
 
 /// The same for forces with a hidden state only: like effects they have few parameters, whereas a law of a variable is
 /// an arbitrary function.
-pub(super) fn remembered(
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-) -> Result<Option<Leftover>, DiagnoseError> {
+pub(super) fn remembered(bench: &Bench<'_>, fitted: &Fitted) -> Result<Option<Leftover>> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let memory = with_memory(bench, &estimation, fitted)?;
@@ -220,11 +204,7 @@ pub(super) fn remembered(
 }
 
 /// Forces with a hidden state.
-fn with_memory(
-    bench: &Bench<'_>,
-    estimation: &Estimation<'_>,
-    fitted: &Fitted,
-) -> Result<Family, DiagnoseError> {
+fn with_memory(bench: &Bench<'_>, estimation: &Estimation<'_>, fitted: &Fitted) -> Result<Family> {
     let mut family = Family::new();
     for memories in Memories::all(bench) {
         let write = |run: usize, at: At<'_>, values: &mut [f64]| memories.at(run, at, values);
@@ -255,15 +235,13 @@ fn with_memory(
 }
 
 /// A law of a variable in an equation or a channel.
-fn unnamed(on: On, variable: String, along: Along, place: usize, law: LawGain) -> Unnamed {
+fn unnamed(on: On, variable: String, along: Along, place: usize, gains: LawGain) -> Unnamed {
     Unnamed {
         along,
         place,
         on,
         variable,
-        gain: law.gain,
-        cross_validated: law.cross_validated,
-        log_bayes_factor: law.log_bayes_factor,
+        gains,
     }
 }
 
@@ -274,7 +252,7 @@ pub(super) fn wave_scores(
     fitted: &Fitted,
     dependences: &[Dependence<'_>],
     along: Along,
-) -> Result<Vec<Vec<(usize, TermScores)>>, DiagnoseError> {
+) -> Result<Vec<Vec<(usize, TermScores)>>> {
     let model = estimation.setup().model;
     let counts = dependences.iter().map(|own| 2 * own.waves(along));
     let counts: Vec<usize> = counts.collect();
@@ -300,7 +278,7 @@ pub(super) fn term_scores(
     fitted: &Fitted,
     shapes: Shapes<'_>,
     groups: &[usize],
-) -> Result<Vec<Vec<(usize, TermScores)>>, DiagnoseError> {
+) -> Result<Vec<Vec<(usize, TermScores)>>> {
     let (free, setup) = (moving(&fitted.fit), estimation.setup());
     let (along, count) = (shapes.along, shapes.count);
     // The command of a controller is correlated with the error of the filter: impulses in proportion to its innovation
@@ -331,18 +309,15 @@ pub(super) fn term_scores(
     let Some(by_run) = ByRun::new(&tangent, bench.weight, &nuisances) else {
         return Ok(groups.iter().map(|_| Vec::new()).collect());
     };
-    let places: Vec<Option<usize>> = match along {
-        Along::Disturbances => (setup.disturbances.iter())
-            .map(|one| match *one {
-                Disturbance::Force(equation) => Some(equation),
+    let places: Vec<(usize, usize)> = match along {
+        Along::Disturbances => (setup.disturbances.iter().enumerate())
+            .filter_map(|(number, one)| match *one {
+                Disturbance::Force(equation) => Some((number, equation)),
                 Disturbance::Rate(_) => None,
             })
             .collect(),
-        Along::Channels => (0..setup.channels.len()).map(Some).collect(),
+        Along::Channels => (0..setup.channels.len()).map(|own| (own, own)).collect(),
     };
-    let places = places.into_iter().enumerate();
-    let places = places.filter_map(|(number, place)| Some((number, place?)));
-    let places: Vec<(usize, usize)> = places.collect();
     let mut before = 0;
     let of_groups = groups.iter().map(|&terms| {
         let first = before;
@@ -372,7 +347,7 @@ impl Family {
 
     fn add(&mut self, unnamed: Option<Unnamed>) {
         self.tried += 1;
-        let generalises = |one: &Unnamed| one.cross_validated > REPEATED * one.gain;
+        let generalises = |one: &Unnamed| one.gains.cross_validated > REPEATED * one.gains.gain;
         self.found.extend(unnamed.filter(generalises));
     }
 }
@@ -382,7 +357,7 @@ fn joined<const KINDS: usize>(families: [Family; KINDS]) -> Option<Leftover> {
     let weighed = families.into_iter().flat_map(|family| {
         let weight = -((KINDS * family.tried.max(1)) as f64).ln();
         let found = family.found.into_iter();
-        found.map(move |one| (one.log_bayes_factor + weight, one))
+        found.map(move |one| (one.gains.log_bayes_factor + weight, one))
     });
     let all: Vec<(f64, Unnamed)> = weighed.collect();
     let log = log_sum(all.iter().map(|(log, _)| *log));
@@ -396,10 +371,11 @@ fn joined<const KINDS: usize>(families: [Family; KINDS]) -> Option<Leftover> {
 
 /// Channels outside the model on which the gap of a hypothesis depends, each with the equation of the strongest
 /// dependence: those with odds of at least twenty, corrected for the number tried.
-pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, DiagnoseError> {
+pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Hint>> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let along = Along::Disturbances;
+    let log = |one: &Unnamed| one.gains.log_bayes_factor;
     let mut found = Vec::new();
     let mut tried = 0;
     for dependence in bench.unmodelled.iter().map(Dependence::unmodelled) {
@@ -412,12 +388,17 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
             family.add(law.map(unnamed));
         }
         tried += family.tried;
-        let log = |one: &Unnamed| one.log_bayes_factor;
         let all = family.found.into_iter();
         found.extend(all.max_by(|a, b| log(a).total_cmp(&log(b))));
     }
     let least = TIED + (tried.max(1) as f64).ln();
-    found.retain(|one| one.log_bayes_factor > least);
-    found.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
-    Ok(found)
+    found.retain(|one| log(one) > least);
+    found.sort_by(|a, b| log(b).total_cmp(&log(a)));
+    let hints = found.into_iter().map(|one| Hint {
+        equation: bench.effects.info().states[one.place].name.to_string(),
+        variable: one.variable,
+        gain: one.gains.gain,
+        log_bayes_factor: one.gains.log_bayes_factor,
+    });
+    Ok(hints.collect())
 }

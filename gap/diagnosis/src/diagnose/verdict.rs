@@ -1,8 +1,8 @@
 //! The verdict: what the leading hypothesis says, after predictions of the held-out runs.
 
-use super::bench::Bench;
 use super::calibration::{IMMATERIAL, MUCH, TIED};
-use super::report::{HowFar, Hypothesis, Left, Report, Share, UNKNOWN, Where};
+use super::report::UNKNOWN;
+use super::{Bench, HowFar, Hypothesis, Left, Report, Share, Where};
 
 /// The result in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,8 +22,8 @@ pub enum GapVerdict {
 const MOST: f64 = 0.5;
 /// Mean square error relative to that of the noise up to which predictions are as good as they can be.
 const NEAR: f64 = 2.0;
-/// Log Bayes factor of a law one step ahead beyond which it is a gap although predictions over a second do not show it: odds
-/// of some hundred.
+/// Log Bayes factor of a law one step ahead beyond which it is a gap although predictions over a second do not show it:
+/// odds of some hundred.
 const DECISIVE: f64 = 2.0 * TIED;
 /// Part of its probability that `unknown` keeps where its law closes nothing.
 const DOUBT: f64 = 0.05;
@@ -53,10 +53,8 @@ impl GapVerdict {
         let stays = far.budget.iter().find(|part| part.is_rest());
         let most_stays = stays.is_some_and(|part| part.closed > MOST);
         // An effect that closes nothing is no explanation, however significant it is.
-        let closes = far
-            .budget
-            .iter()
-            .any(|part| part.is_effect() && part.is_material);
+        let mut parts = far.budget.iter();
+        let closes = parts.any(|part| part.is_effect() && part.is_material);
         if self == Self::Explained && names_effects && !far.budget.is_empty() && !closes {
             return Self::Ambiguous;
         }
@@ -79,8 +77,8 @@ impl GapVerdict {
 }
 
 impl Report {
-    /// Whether `unknown` leads after predictions of the held-out runs although no gap was found: a law of no effect of the
-    /// library may be too small for windows and yet predict materially better. `place` is where it acts.
+    /// Whether `unknown` leads after predictions of the held-out runs although no gap was found: a law of no effect of
+    /// the library may be too small for windows and yet predict materially better. `place` is where it acts.
     pub(super) fn recall_law(&mut self, far: &HowFar, place: &Where) -> bool {
         let predicts = |part: &Share| part.is_law() && part.interval[0] > IMMATERIAL;
         let is_gap = far.budget.iter().any(predicts) && far.kept_of_law() >= 1.0;
@@ -100,9 +98,9 @@ impl Report {
         true
     }
 
-    /// Whether the evidence for a law is decisive, one step ahead and on runs to which it was not fitted: predictions over a
-    /// second may not resolve it. Over windows there is no process noise that gusts could be, and what servos hide is
-    /// immaterial.
+    /// Whether the evidence for a law is decisive, one step ahead and on runs to which it was not fitted: predictions
+    /// over a second may not resolve it. Over windows there is no process noise that gusts could be, and what servos
+    /// hide is immaterial.
     fn is_law_decisive(&self, bench: &Bench<'_>) -> bool {
         let is_decisive = |left: &Left| left.log_bayes_factor > DECISIVE;
         let is_one_step = !bench.is_over_windows() && !bench.is_of_robot;
@@ -174,7 +172,7 @@ fn forget_immaterial_law(which: &mut [Hypothesis], far: &HowFar) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::report::{LAW, REFIT, REST};
-    use super::super::value::Value;
+    use super::super::yardstick::Value;
     use super::*;
 
     fn far(closed: f64, is_material: bool) -> HowFar {
@@ -185,24 +183,16 @@ mod tests {
             is_material,
         };
         HowFar {
-            horizon_s: 1.0,
             nominal: 10.0,
             refitted: 9.0,
             with_effect: 1.0,
             noise_floor: 0.5,
-            closed,
-            closed_ci95: [closed - 0.01, closed + 0.01],
-            closed_vs_refitted: closed,
             budget: vec![
                 share(REFIT, 0.99 - closed, true),
                 share("coulomb_friction@x", closed, is_material),
                 share(REST, 0.01, false),
             ],
-            channels: Vec::new(),
-            before: None,
-            bettered_ci95: [[0.9, 1.0]; 2],
-            is_worse: false,
-            runs: Vec::new(),
+            ..HowFar::default()
         }
     }
 
@@ -210,10 +200,7 @@ mod tests {
         Hypothesis {
             effects: effect.iter().map(|&name| name.to_owned()).collect(),
             probability,
-            same_as: None,
-            log_bayes_factor: None,
-            parameters: Vec::new(),
-            changes: None,
+            ..Hypothesis::default()
         }
     }
 
@@ -252,38 +239,29 @@ mod tests {
             &[(REFIT, 1.05), (REST, -0.05)][..],
             &[(REFIT, 0.999), (LAW, 0.0), (REST, 0.001)],
         ] {
-            let (effects, probability) = first(0.95, &with_budget(budget));
-            assert!(effects.is_empty() && (0.7..0.8).contains(&probability));
             // Beside a law that was certain no other has a share.
-            let (effects, probability) = first(1.0, &with_budget(budget));
-            assert!(effects.is_empty() && (0.9..1.0).contains(&probability));
+            for (unknown, range) in [(0.95, 0.7..0.8), (1.0, 0.9..1.0)] {
+                let (effects, probability) = first(unknown, &with_budget(budget));
+                assert!(effects.is_empty() && range.contains(&probability));
+            }
         }
-        // The law closes a part, or much stays, or a part that is small and many times the noise.
-        for budget in [
-            &[(REFIT, 0.7), (LAW, 0.29), (REST, 0.01)],
-            &[(REFIT, 0.6), (LAW, 0.0), (REST, 0.4)],
-            &[(REFIT, 0.985), (LAW, 0.014), (REST, 0.001)],
-        ] {
-            assert_eq!(
-                first(0.95, &with_budget(budget)),
-                (vec![UNKNOWN.to_owned()], 0.95)
-            );
-        }
-    }
-
-    #[test]
-    fn errors_that_the_noise_explains_leave_no_law() {
-        // Nothing of the gap closes, as there is none.
-        let far = |error: f64, noise_floor: f64| HowFar {
+        // Nothing of the gap closes, as there is none: the noise explains the errors.
+        let of_noise = |error: f64, noise_floor: f64| HowFar {
             nominal: error,
             refitted: error,
             noise_floor,
             ..with_budget(&[(REFIT, 0.0), (REST, 1.0)])
         };
-        let (effects, _) = first(0.95, &far(14.2, 14.7));
-        assert!(effects.is_empty());
-        // Errors above the noise, and far below what process noise would do.
-        for far in [far(14.2, 12.0), far(112.0, 505.0)] {
+        assert!(first(0.95, &of_noise(14.2, 14.7)).0.is_empty());
+        for far in [
+            // The law closes a part, or much stays, or a part that is small and many times the noise.
+            with_budget(&[(REFIT, 0.7), (LAW, 0.29), (REST, 0.01)]),
+            with_budget(&[(REFIT, 0.6), (LAW, 0.0), (REST, 0.4)]),
+            with_budget(&[(REFIT, 0.985), (LAW, 0.014), (REST, 0.001)]),
+            // Errors above the noise, and far below what process noise would do.
+            of_noise(14.2, 12.0),
+            of_noise(112.0, 505.0),
+        ] {
             assert_eq!(first(0.95, &far), (vec![UNKNOWN.to_owned()], 0.95));
         }
     }
@@ -314,20 +292,8 @@ mod tests {
     #[test]
     fn what_closes_nothing_explains_nothing() {
         let which = [Hypothesis {
-            effects: vec!["coulomb_friction@x".to_owned()],
-            probability: 0.95,
-            same_as: None,
-            log_bayes_factor: Some(40.0),
-            parameters: vec![Value {
-                name: "coulomb_friction@x.force".to_owned(),
-                value: 0.2,
-                std: 0.01,
-                unit: "N".to_owned(),
-                without: Some(0.0),
-                is_determined: true,
-                yardstick: None,
-            }],
-            changes: None,
+            parameters: vec![Value::default()],
+            ..hypothesis(Some("coulomb_friction@x"), 0.95)
         }];
         let after = |far: &HowFar| GapVerdict::Explained.after(&which, Some(far), false);
         assert_eq!(after(&far(0.9, true)), GapVerdict::Explained);

@@ -4,11 +4,9 @@
 //! them count as n / (1 + 2 Σ ρₖ) independent ones (G. E. P. Box, G. M. Jenkins and G. C. Reinsel,
 //! *Time Series Analysis*, 4th edition, 2008, section 2.1).
 
-use appell_estimate::{Estimation, Innovation};
+use appell_estimate::Innovation;
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
+use super::{Bench, Fitted, Result};
 
 /// Largest lag in samples.
 const FARTHEST: usize = 100;
@@ -16,10 +14,8 @@ const FARTHEST: usize = 100;
 const NONE: f64 = 3.0;
 
 /// Effective sample size relative to the number of samples, from 0 to 1.
-pub(super) fn independent(bench: &Bench<'_>, fitted: &Fitted) -> Result<f64, DiagnoseError> {
-    let setup = bench.setup(&fitted.members);
-    let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let runs = estimation.innovations(&fitted.fit.values)?;
+pub(super) fn independent(bench: &Bench<'_>, fitted: &Fitted) -> Result<f64> {
+    let runs = bench.innovations(fitted)?;
     let (mut counted, mut all) = (0.0, 0.0);
     for channel in 0..bench.measured.len() {
         let own = |run: &Vec<Innovation>| -> Vec<f64> {
@@ -75,15 +71,11 @@ mod tests {
     }
 
     #[test]
-    fn white_samples_all_count() {
-        let one = following(&[kept(0.0)]);
-        assert!((one - 1.0).abs() < 1e-12, "{one}");
-    }
-
-    #[test]
     fn samples_that_follow_each_other_count_as_fewer() {
         // 1 + 2 Σ 0.8ᵏ = (1 + 0.8) / (1 − 0.8)
-        let nine = following(&[kept(0.8)]);
-        assert!((nine - 9.0).abs() < 0.9, "{nine}");
+        for (part, expected, error) in [(0.0, 1.0, 1e-12), (0.8, 9.0, 0.9)] {
+            let found = following(&[kept(part)]);
+            assert!((found - expected).abs() < error, "{found}");
+        }
     }
 }

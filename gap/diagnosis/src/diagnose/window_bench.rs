@@ -3,11 +3,10 @@
 
 use appell_estimate::{Effort, Estimation, Fit, Free, Layout, Unknown};
 
-use super::DiagnoseError;
-use super::bench::{Bench, SHARES};
 use super::calibration::TIED;
-use super::evidence::Fitted;
 use super::scales::deviation;
+use super::starts::likeliest;
+use super::{Bench, Fitted, Result};
 use crate::identify::Problem;
 use appell_recordings::{DataSet, Run};
 
@@ -25,7 +24,7 @@ pub(super) const TOLERANCE: f64 = 0.05;
 
 impl Bench<'_> {
     /// The noise levels of a hypothesis.
-    pub(super) fn levels(&self, fitted: &Fitted) -> Result<Vec<(Unknown, f64)>, DiagnoseError> {
+    pub(super) fn levels(&self, fitted: &Fitted) -> Result<Vec<(Unknown, f64)>> {
         let levels = self.problem.levels.iter().map(|free| {
             let value = fitted.fit.values[fitted.layout.place(free.unknown)?];
             Ok((free.unknown, value))
@@ -35,11 +34,7 @@ impl Bench<'_> {
 
     /// For windows of the recordings of another problem. With these noise levels the filter estimates the state before
     /// a prediction.
-    pub(super) fn over(
-        windows: &DataSet,
-        from: &Self,
-        levels: &[(Unknown, f64)],
-    ) -> Result<Self, DiagnoseError> {
+    pub(super) fn over(windows: &DataSet, from: &Self, levels: &[(Unknown, f64)]) -> Result<Self> {
         let mut negligible = Vec::new();
         let quiet = |estimation: &Estimation<'_>, problem: &mut Problem| {
             let layout = estimation.layout();
@@ -71,26 +66,15 @@ impl Bench<'_> {
             speeds
         };
         bench.told = each * histories as f64;
-        let values = bench.recordings.iter().map(|run| {
+        let samples = bench.recordings.iter().flat_map(|run| {
             let rows = 0..run.times().len();
-            rows.map(|row| {
-                run.measured(row)
-                    .iter()
-                    .filter(|value| !value.is_nan())
-                    .count()
-            })
-            .sum::<usize>()
+            rows.flat_map(move |row| run.measured(row))
         });
-        bench.weight = (bench.told / values.sum::<usize>().max(1) as f64).min(1.0);
+        let samples = samples.filter(|value| !value.is_nan()).count();
+        bench.weight = (bench.told / samples.max(1) as f64).min(1.0);
         bench.predicting = levels.to_vec();
         bench.is_of_robot = from.is_of_robot;
         Ok(bench)
-    }
-
-    /// The same with the likelihood weight and the effective sample size of another problem.
-    pub(super) fn with_weight_of(mut self, other: &Bench<'_>) -> Self {
-        (self.weight, self.told) = (other.weight, other.told);
-        self
     }
 
     /// Whether there is no process noise.
@@ -100,17 +84,15 @@ impl Bench<'_> {
 
     /// Noise of the sensors, if the noise levels are those of prediction errors; otherwise `None`.
     pub(super) fn noise_of_sensors(&self) -> Option<Vec<f64>> {
-        let noise = self
-            .predicting
-            .iter()
-            .filter(|(unknown, _)| matches!(unknown, Unknown::Noise(_)));
+        let is_noise = |(unknown, _): &&(Unknown, f64)| matches!(unknown, Unknown::Noise(_));
+        let noise = self.predicting.iter().filter(is_noise);
         self.is_over_windows()
             .then(|| noise.map(|(_, value)| *value).collect())
     }
 
     /// Whether the errors of a robot over windows are so close to the noise of its sensors that no law for the rest can
     /// gain much.
-    pub(super) fn leaves_nothing(&self, fitted: &Fitted) -> Result<bool, DiagnoseError> {
+    pub(super) fn leaves_nothing(&self, fitted: &Fitted) -> Result<bool> {
         let Some(sensors) = self.noise_of_sensors().filter(|_| self.is_of_robot) else {
             return Ok(false);
         };
@@ -127,7 +109,7 @@ impl Bench<'_> {
     }
 
     /// Whether a hypothesis predicts: errors over windows are far smaller than the motion.
-    pub(super) fn predicts(&self, fitted: &Fitted) -> Result<bool, DiagnoseError> {
+    pub(super) fn predicts(&self, fitted: &Fitted) -> Result<bool> {
         let measured = self.set.measured(self.effects.info());
         for (place, (channel, _)) in measured.iter().enumerate() {
             let mut columns = self.set.channels.iter();
@@ -148,35 +130,14 @@ impl Bench<'_> {
         (-2.0 * gain / self.told).exp()
     }
 
-    /// A fit of another problem on the rows and with the noise levels of this one.
-    pub(super) fn taken(&self, from: &Self, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
-        self.with_levels(
-            from,
-            fitted,
-            (&self.problem.start, &self.layout),
-            self.effort(),
-        )
-    }
-
-    /// A fit of another problem on these rows, with noise levels from those of the nominal model.
-    pub(super) fn as_it_is(
-        &self,
-        from: &Self,
-        fitted: &Fitted,
-        nominal: &Fitted,
-    ) -> Result<Fitted, DiagnoseError> {
-        let levels = (&nominal.fit.values[..], &nominal.layout);
-        self.with_levels(from, fitted, levels, SHARES)
-    }
-
-    /// A fit of another problem with noise levels that are fitted from initial ones.
-    fn with_levels(
+    /// A fit of another problem on these rows with noise levels that are fitted from initial ones.
+    pub(super) fn with_levels(
         &self,
         from: &Self,
         fitted: &Fitted,
         (levels, places): (&[f64], &Layout),
         effort: Effort,
-    ) -> Result<Fitted, DiagnoseError> {
+    ) -> Result<Fitted> {
         let setup = self.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
         let layout = estimation.layout();
@@ -194,55 +155,46 @@ impl Bench<'_> {
         let free = &self.problem.levels;
         let fit = self.weighed(&estimation, &values, free, Fit::quick, effort)?;
         Ok(Fitted {
-            members: fitted.members.clone(),
             layout,
             fit,
-            evidence: fitted.evidence,
-            coloured: fitted.coloured,
+            ..fitted.clone()
         })
     }
-}
 
-impl Bench<'_> {
     /// Increases the initial noise of a search from that of the sensors towards the errors of the model over windows.
-    pub(super) fn loosen(
-        &self,
-        estimation: &Estimation<'_>,
-        values: &mut [f64],
-    ) -> Result<(), DiagnoseError> {
+    pub(super) fn loosen(&self, estimation: &Estimation<'_>, values: &mut [f64]) -> Result<()> {
         if !self.is_over_windows() {
             return Ok(());
         }
         let layout = estimation.layout();
-        let mut best: Option<(f64, Vec<f64>)> = None;
-        for factor in LARGER {
+        let levels = self.problem.levels.iter();
+        let places = levels.map(|free| layout.place(free.unknown));
+        let places: Vec<usize> = places.collect::<Result<_, _>>()?;
+        let larger = LARGER.map(|factor| {
             let mut larger = values.to_vec();
-            for free in &self.problem.levels {
-                larger[layout.place(free.unknown)?] *= factor;
+            for &place in &places {
+                larger[place] *= factor;
             }
-            let Ok(likelihood) = estimation.log_likelihood(&larger) else {
-                continue;
-            };
-            if best.as_ref().is_none_or(|(most, _)| likelihood > *most) {
-                best = Some((likelihood, larger));
-            }
-        }
-        if let Some((_, larger)) = best {
+            larger
+        });
+        if let Some(larger) = likeliest(estimation, larger) {
             values.copy_from_slice(&larger);
         }
         Ok(())
     }
 
     /// Refits a hypothesis of another problem to these windows; returns the gain and the fit.
-    pub(super) fn fitted_again(
-        &self,
-        from: &Self,
-        fitted: &Fitted,
-    ) -> Result<(f64, Fitted), DiagnoseError> {
-        let taken = self.taken(from, fitted)?;
+    pub(super) fn fitted_again(&self, from: &Self, fitted: &Fitted) -> Result<(f64, Fitted)> {
+        let levels = (&self.problem.start[..], &self.layout);
+        let taken = self.with_levels(from, fitted, levels, self.effort())?;
         let setup = self.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        let again = self.fit(&fitted.members, &estimation, &taken.fit.values)?;
+        let again = self.fit(
+            self.effort(),
+            &fitted.members,
+            &estimation,
+            &taken.fit.values,
+        )?;
         let gain = again.fit.log_likelihood - taken.fit.log_likelihood;
         Ok((gain, again))
     }
@@ -250,8 +202,7 @@ impl Bench<'_> {
 
 /// Number of windows without common rows.
 fn independent(windows: &DataSet, whole: &[Run]) -> f64 {
-    let duration = |run: &Run| run.times[run.times.len() - 1] - run.times[0];
-    let longest = windows.runs.iter().map(duration).fold(0.0, f64::max);
-    let total: f64 = whole.iter().map(duration).sum();
+    let longest = windows.runs.iter().map(Run::duration).fold(0.0, f64::max);
+    let total: f64 = whole.iter().map(Run::duration).sum();
     (total / longest).clamp(1.0, windows.runs.len() as f64)
 }

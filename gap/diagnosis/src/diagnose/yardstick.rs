@@ -1,4 +1,5 @@
-//! Sizes relative to known quantities of the rig: 36 times the stated inertia says more than 0.0043 kg m².
+//! Estimates with their intervals, and sizes relative to known quantities of the rig: 36 times the stated inertia says
+//! more than 0.0043 kg m².
 //!
 //! What a size adds to the equations decides what it is compared with: an inertia with the stated one of the same
 //! pseudo-velocity, a force with those that the stated model applies along it. So no kind of effect is treated
@@ -9,11 +10,11 @@ use appell_runtime::model::{At, Model, Quantity};
 use appell_spec::units::{self, Dimension};
 use serde::Serialize;
 
-use super::DiagnoseError;
-use super::bench::Bench;
-use super::evidence::Fitted;
+use super::{Bench, Fitted, Result};
 use crate::effects::{Candidate, Family, Part};
 
+/// The 97.5 % quantile of the normal distribution: half of a 95 % interval in standard deviations.
+pub const QUANTILE: f64 = 1.959_964;
 /// Number of motions along the recordings that are evaluated.
 const MOTIONS: usize = 100;
 /// A relative change below this is rounding.
@@ -23,6 +24,43 @@ const WRONG: f64 = 2.0;
 /// The inertia of a motor, reflected through its gear, may exceed that of a link, but hardly by this factor.
 const REFLECTED: f64 = 10.0;
 
+/// An estimate.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Value {
+    /// Effect and parameter.
+    pub name: String,
+    /// Most likely value.
+    pub value: f64,
+    /// Standard deviation; NaN if it is undefined, as at a limit, or where sensitivities diverge and there is no prior.
+    pub std: f64,
+    /// Unit.
+    pub unit: String,
+    /// Value without the effect; `None` for a shape, which then has no meaning.
+    pub without: Option<f64>,
+    /// Whether the recordings determine it: the 95 % interval of a size does not reach the value without the effect, and
+    /// that of a shape is less than half of the prior one.
+    #[serde(rename = "determined")]
+    pub is_determined: bool,
+    /// Its size relative to a known quantity, where there is one.
+    pub yardstick: Option<Yardstick>,
+}
+
+impl Value {
+    /// The effect.
+    pub(super) fn effect(&self) -> &str {
+        self.name.rsplit_once('.').map_or("", |(effect, _)| effect)
+    }
+
+    /// Of a size, which has this value without the effect.
+    pub(super) fn of_size(mut self, without: f64) -> Self {
+        self.without = Some(without);
+        let interval = QUANTILE * self.std;
+        // At a limit there is no interval.
+        self.is_determined = self.std.is_nan() || (self.value - without).abs() > interval;
+        self
+    }
+}
+
 /// A size in units of a known quantity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Yardstick {
@@ -30,8 +68,8 @@ pub struct Yardstick {
     pub ratio: f64,
     /// The quantity.
     pub of: String,
-    /// Whether it is implausible: an added inertia ten times the stated one, a parameter that is wrong by a factor of two.
-    /// Forces have no such limit: a mechanism that coasts has friction and hardly any applied force.
+    /// Whether it is implausible: an added inertia ten times the stated one, a parameter that is wrong by a factor of
+    /// two. Forces have no such limit: a mechanism that coasts has friction and hardly any applied force.
     #[serde(rename = "large")]
     pub is_large: bool,
 }
@@ -94,7 +132,7 @@ pub(super) struct Yardsticks<'b> {
 
 impl<'b> Yardsticks<'b> {
     /// Along the motions of the training runs, smoothed under a hypothesis.
-    pub(super) fn new(bench: &'b Bench<'b>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
+    pub(super) fn new(bench: &'b Bench<'b>, fitted: &Fitted) -> Result<Self> {
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let inputs = bench.effects.info().input_len();

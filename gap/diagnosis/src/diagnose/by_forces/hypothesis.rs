@@ -86,16 +86,11 @@ impl Hypothesis {
     }
 }
 
-/// The most probable differences of some parameters, and the inverse of their covariance.
-pub(super) struct Moves {
+/// The most probable values of some parameters.
+pub(super) struct Solved {
     pub(super) values: DVector<f64>,
+    /// The inverse of their covariance.
     pub(super) information: DMatrix<f64>,
-}
-
-/// The most probable values.
-struct Solved {
-    values: DVector<f64>,
-    information: DMatrix<f64>,
     variances: Vec<f64>,
     /// ln |det E| relative to the nominal one, its part of the log likelihood.
     log_levers: f64,
@@ -208,15 +203,13 @@ impl Squares {
                 let [low, high] = open[i].range;
                 !(low < solved.values[i] && solved.values[i] < high)
             };
-            let against = (0..open.len()).find(is_against);
-            if let Some(against) = against {
-                let gone = open.remove(against).column;
-                if members.iter().any(|one| one.is_whole && one.has(gone)) {
-                    return None;
-                }
-                continue;
+            let Some(against) = (0..open.len()).find(is_against) else {
+                return self.evaluated(members, &open, solved);
+            };
+            let gone = open.remove(against).column;
+            if members.iter().any(|one| one.is_whole && one.has(gone)) {
+                return None;
             }
-            return self.evaluated(members, &open, solved);
         }
     }
 
@@ -226,19 +219,6 @@ impl Squares {
         let equations = self.equations.iter().zip(nominal);
         let squares = equations.map(|(squares, variance)| squares[(column, column)] / variance);
         (self.equations.len() as f64 * self.count / squares.sum::<f64>()).sqrt()
-    }
-
-    /// The most probable values of the free parameters.
-    pub(super) fn moves(&self, open: &[Open]) -> Option<Moves> {
-        let Solved {
-            values,
-            information,
-            ..
-        } = self.solved(open)?;
-        Some(Moves {
-            values,
-            information,
-        })
     }
 
     fn evaluated(&self, members: &[Member], open: &[Open], solved: Solved) -> Option<Hypothesis> {
@@ -291,7 +271,7 @@ impl Squares {
     }
 
     /// The most probable values by Newton's method, alternating with the residual variances.
-    fn solved(&self, open: &[Open]) -> Option<Solved> {
+    pub(super) fn solved(&self, open: &[Open]) -> Option<Solved> {
         let last = self.equations.first()?.nrows() - 1;
         let count = open.len();
         let independent: f64 = self.independent.iter().sum();
@@ -383,22 +363,16 @@ fn solve(information: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64
         return Some(right.clone());
     }
     let scale = information.diagonal().map(f64::sqrt);
-    if scale
-        .iter()
-        .any(|scale| *scale <= 0.0 || !scale.is_finite())
-    {
+    let is_wrong = |scale: &f64| *scale <= 0.0 || !scale.is_finite();
+    if scale.iter().any(is_wrong) {
         return None;
     }
     let scaled = DMatrix::from_fn(right.len(), right.len(), |i, j| {
         information[(i, j)] / (scale[i] * scale[j])
     });
     let factor = scaled.cholesky()?;
-    let is_singular = factor
-        .l_dirty()
-        .diagonal()
-        .iter()
-        .any(|pivot| pivot * pivot < NEW);
-    if is_singular {
+    let pivots = factor.l_dirty().diagonal();
+    if pivots.iter().any(|pivot| pivot * pivot < NEW) {
         return None;
     }
     let solved = factor.solve(&right.component_div(&scale));

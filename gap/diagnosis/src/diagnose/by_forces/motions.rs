@@ -6,7 +6,7 @@ use appell_runtime::model::{At, Model};
 use appell_spec::mechanism::CoordinateId;
 use nalgebra::{DMatrix, DVector};
 
-use super::super::DiagnoseError;
+use super::super::Result;
 use crate::base::recorded;
 use crate::effects::{EffectModel, Part};
 use crate::inverse::coordinates;
@@ -32,8 +32,8 @@ pub(super) struct Variable {
     pub(super) shapes: Option<Shaped>,
 }
 
-/// Forces are bilinear in a size s and a shape z, as in the mass of a payload and its place: s f(z) = s f(z₀) + s (z − z₀) f′.
-/// The variable of a shape is the product s (z − z₀).
+/// Forces are bilinear in a size s and a shape z, as in the mass of a payload and its place: s f(z) = s f(z₀) + s (z −
+/// z₀) f′. The variable of a shape is the product s (z − z₀).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shaped {
     /// Index of the size.
@@ -134,7 +134,7 @@ pub(super) struct Motions {
 
 impl Motions {
     /// The motions of all runs of a data set, which are all training or all test runs.
-    pub(super) fn of(set: &DataSet, effects: &EffectModel) -> Result<Self, DiagnoseError> {
+    pub(super) fn of(set: &DataSet, effects: &EffectModel) -> Result<Self> {
         let model = effects.beside(&[]);
         let info = model.info();
         let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();

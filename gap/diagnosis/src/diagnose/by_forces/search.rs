@@ -8,11 +8,12 @@ use appell_recordings::DataSet;
 use nalgebra::DVector;
 
 use super::super::bench::wrong;
-use super::super::calibration::{Rest, inexact, tempered, unlisted, unlisted_beside_nothing};
-use super::super::prior::prior;
-use super::hypothesis::{Hypothesis, Member, Moves, Open, Squares};
+use super::super::calibration::{
+    inexact, names, prior, tempered, unlisted, unlisted_beside_nothing,
+};
+use super::hypothesis::{Hypothesis, Member, Open, Solved, Squares};
 use super::motions::Motions;
-use crate::effects::{Acts, Candidate, EffectModel, Part};
+use crate::effects::{Acts, EffectModel, Part};
 use crate::identify::possible;
 
 /// Number of best hypotheses to which candidates are added.
@@ -56,10 +57,10 @@ impl Findings {
 
 /// A search for hypotheses.
 pub(super) struct Search<'s> {
-    effects: &'s EffectModel,
-    set: &'s DataSet,
-    motions: &'s Motions,
-    squares: Squares,
+    pub(super) effects: &'s EffectModel,
+    pub(super) set: &'s DataSet,
+    pub(super) motions: &'s Motions,
+    pub(super) squares: Squares,
 }
 
 impl<'s> Search<'s> {
@@ -76,9 +77,8 @@ impl<'s> Search<'s> {
     /// `None` if not even the nominal model has finite forces.
     pub(super) fn found(&self) -> Option<Findings> {
         let first = self.fits(&self.squares);
-        let best = first
-            .iter()
-            .max_by(|a, b| self.log_posterior(a).total_cmp(&self.log_posterior(b)));
+        let log = |own: &&Hypothesis| self.log_posterior(own);
+        let best = first.iter().max_by(|a, b| log(a).total_cmp(&log(b)));
         let squares = match best {
             Some(best) => self.squares.correlated(self.motions, best),
             None => self.squares.clone(),
@@ -97,10 +97,8 @@ impl<'s> Search<'s> {
         let explained = |own: &Hypothesis| own.log - base;
         let weight = |(log, own): (&f64, &Hypothesis)| {
             let weight = tempered(log - logs[best]).exp();
-            let is_part = own
-                .members
-                .iter()
-                .all(|one| all[best].members.contains(one));
+            let mut members = own.members.iter();
+            let is_part = members.all(|one| all[best].members.contains(one));
             if !is_part || own.members.len() == all[best].members.len() {
                 return weight;
             }
@@ -118,11 +116,7 @@ impl<'s> Search<'s> {
         let nominal = fits.iter().position(|(own, _)| own.members.is_empty());
         let nominal = nominal.unwrap_or(0);
         let odds = if nominal == 0 {
-            let log_bayes_factor = squares.beyond(&fits[0].0, &noise);
-            unlisted_beside_nothing(Rest {
-                log_bayes_factor,
-                share: 1.0,
-            })
+            unlisted_beside_nothing(squares.beyond(&fits[0].0, &noise))
         } else {
             let [whole, left] = [nominal, 0].map(|place| beyond(&fits[place].0, &noise));
             unlisted(left / whole)
@@ -179,14 +173,8 @@ impl<'s> Search<'s> {
             member == candidate
                 || !own.is_component && self.effects.candidates[member].name() == name
         });
-        let mut names = self.names(&base.members);
-        names.insert(name);
-        !is_there && names.len() <= MOST_EFFECTS
-    }
-
-    fn names(&self, members: &[usize]) -> BTreeSet<String> {
-        let candidates = members.iter().map(|&one| &self.effects.candidates[one]);
-        candidates.map(Candidate::name).collect()
+        let together = [base.members.as_slice(), &[candidate]].concat();
+        !is_there && names(self.effects, &together).len() <= MOST_EFFECTS
     }
 
     /// Logarithm of the probability, up to a constant.
@@ -198,10 +186,9 @@ impl<'s> Search<'s> {
     fn sizes(&self, candidate: usize) -> Vec<Open> {
         let info = self.effects.info();
         let own = &self.effects.candidates[candidate];
-        let sizes = own.parameters.iter();
-        let sizes = sizes.filter(|(_, part)| *part == Part::Size);
-        let open = sizes.filter_map(|(name, _)| {
-            let parameter = info.parameter_index(name)?;
+        let own = self.effects.own(own).into_iter();
+        let sizes = own.filter(|(_, part)| *part == Part::Size);
+        let open = sizes.filter_map(|(parameter, _)| {
             Some(Open {
                 column: self.motions.column(parameter)?,
                 prior: None,
@@ -258,7 +245,8 @@ impl<'s> Search<'s> {
         })
     }
 
-    fn fitted(&self, squares: &Squares, members: &[usize]) -> Option<Hypothesis> {
+    /// The hypothesis of some members, with all variable parameters of the mechanism.
+    pub(super) fn fitted(&self, squares: &Squares, members: &[usize]) -> Option<Hypothesis> {
         let is_wrong = |parameter: usize| {
             members.iter().any(|&member| {
                 matches!(self.effects.candidates[member].acts, Acts::Parameter(own) if own == parameter)
@@ -275,15 +263,11 @@ impl<'s> Search<'s> {
             };
             Some(Open { prior, ..own })
         };
-        let all = 0..self.set.parameters.len();
-        let (of_members, others): (Vec<usize>, Vec<usize>) =
-            all.partition(|&parameter| is_wrong(parameter));
-        let others: Vec<Open> = others.into_iter().filter_map(tolerance).collect();
+        let others = (0..self.set.parameters.len()).filter(|&parameter| !is_wrong(parameter));
+        let others: Vec<Open> = others.filter_map(tolerance).collect();
         let own = members.iter().map(|&member| {
             let open = match self.effects.candidates[member].acts {
-                Acts::Parameter(own) if of_members.contains(&own) => {
-                    tolerance(own).into_iter().collect()
-                }
+                Acts::Parameter(own) => tolerance(own).into_iter().collect(),
                 _ => self.sizes(member),
             };
             Member {
@@ -322,7 +306,7 @@ impl<'s> Search<'s> {
     }
 
     /// Indices of the re-fitted parameters, their differences and the information about these.
-    pub(super) fn refitted(&self) -> Option<(Vec<usize>, Moves)> {
+    pub(super) fn refitted(&self) -> Option<(Vec<usize>, Solved)> {
         let nominal = self.fitted(&self.squares, &[])?;
         let squares = self.squares.correlated(self.motions, &nominal);
         let nominal = self.fitted(&squares, &[])?;
@@ -330,12 +314,7 @@ impl<'s> Search<'s> {
             .filter_map(|parameter| Some((parameter, self.tolerance(parameter)?)))
             .filter(|(_, open)| nominal.deviations[open.column].is_some())
             .unzip();
-        Some((free, squares.moves(&open)?))
-    }
-
-    /// The hypothesis of some members, with all variable parameters of the mechanism.
-    pub(super) fn of(&self, members: &[usize]) -> Option<Hypothesis> {
-        self.fitted(&self.squares, members)
+        Some((free, squares.solved(&open)?))
     }
 }
 

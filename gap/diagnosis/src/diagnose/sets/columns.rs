@@ -2,12 +2,10 @@
 
 use appell_estimate::{Direction, Estimation, Tangent, Unknown};
 
-use super::super::DiagnoseError;
-use super::super::bench::{Bench, wrong};
-use super::super::evidence::Fitted;
-use super::super::gram::{Normal, whitened};
-use super::super::nuisance::{known, moves_the_mean};
-use super::super::screen::{directions, positive};
+use super::super::bench::wrong;
+use super::super::gram::{Normal, known, moves_the_mean, whitened};
+use super::super::screen::directions;
+use super::super::{Bench, Fitted, Result};
 use super::{BEYOND, Column, Level, Nuisance};
 use crate::effects::Acts;
 
@@ -17,17 +15,16 @@ pub(in super::super) fn is_fixed(bench: &Bench<'_>, member: usize) -> bool {
     candidate.brings.is_some() || matches!(candidate.acts, Acts::Slow(_))
 }
 
-/// The columns of all candidates with sensitivities, with their directions.
+/// The columns of all candidates with sensitivities.
 pub(super) fn columns(
     bench: &Bench<'_>,
     fitted: &Fitted,
     estimation: &Estimation<'_>,
     values: &[f64],
-) -> Result<(Vec<Column>, Vec<Direction>), DiagnoseError> {
+) -> Result<Vec<Column>> {
     let (setup, layout) = (estimation.setup(), estimation.layout());
     let at = |list: &[usize], input: usize| list.iter().position(|own| *own == input);
     let mut list: Vec<Column> = Vec::new();
-    let mut of_columns: Vec<Direction> = Vec::new();
     for candidate in 0..bench.effects.candidates.len() {
         let own = bench.candidate(candidate);
         let is_member = fitted.members.contains(&candidate);
@@ -36,8 +33,8 @@ pub(super) fn columns(
         if own.brings.is_some() || is_slow || is_member && is_fixed(bench, candidate) {
             continue;
         }
-        let sides = positive(bench, candidate);
-        for (place, direction) in directions(bench, candidate).into_iter().enumerate() {
+        let all = directions(bench, candidate).into_iter().enumerate();
+        for (place, (direction, is_positive)) in all {
             let inside = match (own.acts, is_member) {
                 (Acts::Lag(input), true) => at(&setup.lagging, input).map(Unknown::Lag),
                 (Acts::Delay(input), true) => at(&setup.delayed, input).map(Unknown::InputDelay),
@@ -61,42 +58,33 @@ pub(super) fn columns(
             };
             list.push(Column {
                 candidate,
-                direction: place,
-                is_positive: sides.get(place).copied().unwrap_or(false),
+                place,
+                direction,
+                is_positive,
                 most: match own.acts {
                     Acts::Delay(_) | Acts::Late(_) => BEYOND * bench.longest_delay(),
                     _ => f64::INFINITY,
                 },
-                unknown: match direction {
-                    Direction::Value(unknown) => Some(unknown),
-                    _ => None,
-                },
                 known,
                 size,
             });
-            of_columns.push(direction);
         }
     }
-    Ok((list, of_columns))
+    Ok(list)
 }
 
 /// The nuisance directions: parameters of the nominal model, of fixed members, and shapes of other members.
-pub(super) fn nuisances(
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    of_columns: &[Direction],
-    columns: &[Column],
-) -> Vec<Nuisance> {
+pub(super) fn nuisances(bench: &Bench<'_>, fitted: &Fitted, columns: &[Column]) -> Vec<Nuisance> {
     let mut all = Vec::new();
     for (place, free) in fitted.fit.free.iter().enumerate() {
         let direction = Direction::Value(free.unknown);
         if !moves_the_mean(direction) {
             continue;
         }
-        let is_own = |(column, own): (&Column, &Direction)| {
-            *own == direction && fitted.members.contains(&column.candidate)
+        let is_own = |column: &Column| {
+            column.direction == direction && fitted.members.contains(&column.candidate)
         };
-        let of_member = columns.iter().zip(of_columns).any(is_own);
+        let of_member = columns.iter().any(is_own);
         if !of_member {
             let coordinate = fitted.fit.coordinates[place];
             all.push(Nuisance {

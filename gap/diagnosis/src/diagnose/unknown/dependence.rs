@@ -10,7 +10,7 @@ use appell_estimate::{Along, Measured, Recording};
 use appell_runtime::model::{At, Model};
 use appell_spec::units;
 
-use super::super::bench::Bench;
+use super::super::Bench;
 use super::super::unmodelled::UnmodelledChannel;
 
 /// Number of harmonics of a variable.
@@ -82,12 +82,16 @@ pub(in super::super) struct Written {
 impl<'b> Dependence<'b> {
     /// A law of a channel outside the model.
     pub(super) fn unmodelled(channel: &'b UnmodelledChannel) -> Self {
+        Self::over(Source::Unmodelled(channel), channel.range)
+    }
+
+    fn over(source: Source<'b>, range: (f64, f64)) -> Self {
         Self {
-            source: Source::Unmodelled(channel),
+            source,
             factor: Factor::One,
-            first: PI / (channel.range.1 - channel.range.0),
+            first: PI / (range.1 - range.0),
             is_position: false,
-            range: channel.range,
+            range,
         }
     }
 
@@ -127,22 +131,10 @@ impl<'b> Dependence<'b> {
         all.extend(moving.iter().filter_map(|&input| {
             let size = change(&bench.recordings, input)?;
             let range = (-REACH * size, REACH * size);
-            Some(Self {
-                source: Source::Change(input),
-                factor: Factor::One,
-                first: PI / (range.1 - range.0),
-                is_position: false,
-                range,
-            })
+            Some(Self::over(Source::Change(input), range))
         }));
-        let range = times(bench);
-        let walking = |factor| Self {
-            source: Source::Time,
-            factor,
-            first: PI / (range.1 - range.0),
-            is_position: false,
-            range,
-        };
+        let time = Self::over(Source::Time, times(bench));
+        let walking = |factor| Self { factor, ..time };
         all.extend(moving.iter().map(|&input| walking(Factor::Input(input))));
         all.extend((0..info.speeds).map(|rate| walking(Factor::Rate(rate))));
         // In a single run a drift is process noise; in runs with the same motion it cannot be separated from a
@@ -156,20 +148,14 @@ impl<'b> Dependence<'b> {
 
     fn own(bench: &Bench<'_>, index: usize, range: (f64, f64)) -> Self {
         let info = bench.effects.info();
-        let length = range.1 - range.0;
         let is_angle = (info.states.get(index))
             .is_some_and(|state| units::parse(&state.unit).is_ok_and(|unit| unit.is_angle()));
-        Self {
-            source: Source::Own(index),
-            factor: Factor::One,
-            first: if is_angle && length > TAU {
-                1.0
-            } else {
-                PI / length
-            },
-            is_position: (info.speeds..info.state_len()).contains(&index),
-            range,
+        let mut own = Self::over(Source::Own(index), range);
+        if is_angle && range.1 - range.0 > TAU {
+            own.first = 1.0;
         }
+        own.is_position = (info.speeds..info.state_len()).contains(&index);
+        own
     }
 
     /// The variable at a state and time; NaN if it was not recorded.
@@ -265,92 +251,68 @@ impl<'b> Dependence<'b> {
         !matches!((self.source, self.factor), (Source::Time, Factor::Rate(_)))
     }
 
-    /// Name of the variable, and the factor of the harmonics.
-    pub(in super::super) fn letters(self, bench: &Bench<'_>) -> (String, Option<String>) {
-        let name = match self.source {
-            Source::Own(index) => quantity(bench, index).0,
-            Source::Change(input) => format!("the change of {}", input_name(bench, input)),
-            Source::Time => "t".to_owned(),
-            Source::Unmodelled(channel) => channel.name.clone(),
+    /// The variable in formulas, its unit, and how many SI units that has.
+    pub(in super::super) fn letters(self, bench: &Bench<'_>) -> (String, String, f64) {
+        match self.source {
+            Source::Own(index) => quantity(bench, index),
+            Source::Change(input) => {
+                let states = bench.effects.info().state_len();
+                let (name, unit, scale) = quantity(bench, states + input);
+                (format!("the change of {name}"), unit, scale)
+            }
+            Source::Time => ("t".to_owned(), "s".to_owned(), 1.0),
+            Source::Unmodelled(channel) => (channel.name.clone(), String::new(), 1.0),
+        }
+    }
+
+    /// Name and unit of the quantity in the factor; `None` without one.
+    fn of_factor(self, bench: &Bench<'_>) -> Option<(String, String)> {
+        let states = bench.effects.info().state_len();
+        let (name, unit, _) = match self.factor {
+            Factor::One => return None,
+            Factor::Time => return Some(("t".to_owned(), "s".to_owned())),
+            Factor::Input(input) | Factor::Load(input) => quantity(bench, states + input),
+            Factor::Rate(rate) | Factor::Sign(rate, _) => quantity(bench, rate),
         };
-        let factor = self.written(bench).and_then(|written| written.factor);
-        (name, factor)
+        Some((name, unit))
     }
 
     /// In words.
     pub(in super::super) fn name(self, bench: &Bench<'_>) -> String {
         let source = match self.source {
-            Source::Own(index) => quantity(bench, index).0,
-            Source::Change(input) => format!("the change of {}", input_name(bench, input)),
             Source::Time => "time".to_owned(),
-            Source::Unmodelled(channel) => channel.name.clone(),
+            _ => self.letters(bench).0,
         };
-        let states = bench.effects.info().state_len();
+        let (other, _) = self.of_factor(bench).unwrap_or_default();
         match self.factor {
             Factor::One => source,
             Factor::Time => format!("{source} and time"),
-            Factor::Input(input) => format!("{} and {source}", quantity(bench, states + input).0),
-            Factor::Load(input) => format!("{source} and |{}|", quantity(bench, states + input).0),
-            Factor::Rate(rate) => format!("{source} and {}", quantity(bench, rate).0),
-            Factor::Sign(rate, _) => {
-                format!("{source} and the sign of {}", quantity(bench, rate).0)
-            }
-        }
-    }
-
-    /// Unit of the variable, and how many SI units it has.
-    pub(in super::super) fn unit(self, bench: &Bench<'_>) -> (String, f64) {
-        match self.source {
-            Source::Own(index) => {
-                let (_, unit, scale) = quantity(bench, index);
-                (unit, scale)
-            }
-            Source::Change(input) => {
-                let states = bench.effects.info().state_len();
-                let (_, unit, scale) = quantity(bench, states + input);
-                (unit, scale)
-            }
-            Source::Time => ("s".to_owned(), 1.0),
-            Source::Unmodelled(_) => (String::new(), 1.0),
+            Factor::Input(_) => format!("{other} and {source}"),
+            Factor::Load(_) => format!("{source} and |{other}|"),
+            Factor::Rate(_) => format!("{source} and {other}"),
+            Factor::Sign(..) => format!("{source} and the sign of {other}"),
         }
     }
 
     /// In the language of a spec; `None` for channels outside the model.
     pub(in super::super) fn written(self, bench: &Bench<'_>) -> Option<Written> {
-        let states = bench.effects.info().state_len();
-        let variable = match self.source {
-            Source::Own(index) => {
-                let (name, unit, _) = quantity(bench, index);
-                pure(&name, &si(&unit))
+        if matches!(self.source, Source::Change(_) | Source::Unmodelled(_)) {
+            return None;
+        }
+        let (name, unit, _) = self.letters(bench);
+        let variable = pure(&name, &si(&unit));
+        let factor = self.of_factor(bench).map(|(name, unit)| {
+            let unit = si(&unit);
+            match self.factor {
+                Factor::Load(_) => (format!("abs({name})"), unit),
+                Factor::Sign(_, small) => {
+                    let rate = pure(&name, &unit);
+                    let sign = format!("{rate}/sqrt(({rate})^2 + {:e})", small * small);
+                    (sign, "1".to_owned())
+                }
+                _ => (name, unit),
             }
-            Source::Time => pure("t", "s"),
-            Source::Change(_) | Source::Unmodelled(_) => return None,
-        };
-        let input = |index: usize| {
-            let (name, unit, _) = quantity(bench, states + index);
-            (name, si(&unit))
-        };
-        let factor = match self.factor {
-            Factor::One => None,
-            Factor::Time => Some(("t".to_owned(), "s".to_owned())),
-            Factor::Input(index) => Some(input(index)),
-            Factor::Load(index) => {
-                let (name, unit) = input(index);
-                Some((format!("abs({name})"), unit))
-            }
-            Factor::Rate(rate) => {
-                let (name, unit, _) = quantity(bench, rate);
-                Some((name, si(&unit)))
-            }
-            Factor::Sign(rate, small) => {
-                let (name, unit, _) = quantity(bench, rate);
-                let rate = pure(&name, &si(&unit));
-                Some((
-                    format!("{rate}/sqrt(({rate})^2 + {:e})", small * small),
-                    "1".to_owned(),
-                ))
-            }
-        };
+        });
         let (factor, factor_unit) = factor.unzip();
         Some(Written {
             variable,
@@ -358,10 +320,6 @@ impl<'b> Dependence<'b> {
             factor_unit,
         })
     }
-}
-
-fn input_name(bench: &Bench<'_>, input: usize) -> String {
-    quantity(bench, bench.effects.info().state_len() + input).0
 }
 
 /// The root mean square of the change of an input from row to row; `None` if it is constant.

@@ -3,12 +3,13 @@
 //!
 //! The hidden state is computed from the recordings once, and then used like a recorded channel.
 
+use std::f64::consts::TAU;
+
 use appell_estimate::Measured;
 use appell_runtime::model::At;
 
-use super::super::bench::Bench;
-use super::trace::Trace;
-use super::{hysteresis, swing};
+use super::super::Bench;
+use super::hidden::{self, Trace};
 use crate::effects::Memory;
 use appell_recordings::Run;
 
@@ -65,15 +66,15 @@ impl Memories {
     }
 
     fn of(kind: Kind, coordinate: &str, traces: &[Trace], places: Vec<usize>) -> Self {
-        let noise = hysteresis::noise(traces);
+        let noise = hidden::noise(traces);
         let sizes = match kind {
-            Kind::Swing => swing::frequencies(traces),
-            Kind::Way => hysteresis::ways(traces, noise),
+            Kind::Swing => hidden::frequencies(traces),
+            Kind::Way => hidden::ways(traces, noise),
         };
         let of_run = |trace: &Trace| {
             let terms = sizes.iter().flat_map(|&size| match kind {
-                Kind::Swing => swing::terms(trace, size).to_vec(),
-                Kind::Way => hysteresis::terms(trace, noise, size).to_vec(),
+                Kind::Swing => hidden::swing_terms(trace, size).to_vec(),
+                Kind::Way => hidden::way_terms(trace, noise, size).to_vec(),
             });
             (trace.times.clone(), terms.collect())
         };
@@ -113,9 +114,13 @@ impl Memories {
 
     /// One of them in words.
     pub(super) fn name(&self, number: usize) -> String {
+        let coordinate = &self.coordinate;
         match self.kind {
-            Kind::Swing => swing::name(&self.coordinate, self.sizes[number]),
-            Kind::Way => hysteresis::name(&self.coordinate),
+            Kind::Swing => {
+                let hertz = self.sizes[number] / TAU;
+                format!("an oscillation of a hidden mass at {coordinate} with {hertz:.2} Hz")
+            }
+            Kind::Way => format!("the travel of {coordinate} since its last reversal"),
         }
     }
 
@@ -124,10 +129,20 @@ impl Memories {
         let own = self.sizes[number];
         let next = self.sizes.get(number + 1);
         let known = [own, next.map_or(own, |next| next - own)];
+        let coordinate = self.coordinate.clone();
         // The force opposes the hysteresis state.
         match self.kind {
-            Kind::Swing => swing::first(&self.coordinate, known, -term),
-            Kind::Way => hysteresis::first(&self.coordinate, known, -term),
+            Kind::Swing => Memory::HiddenMass {
+                behind: coordinate,
+                mass: [-term, -term],
+                rate: known,
+                damping: [hidden::DAMPING, hidden::DAMPING],
+            },
+            Kind::Way => Memory::Hysteresis {
+                along: coordinate,
+                force: [-term, -term],
+                way: known,
+            },
         }
     }
 

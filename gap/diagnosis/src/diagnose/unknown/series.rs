@@ -26,7 +26,7 @@ pub(in super::super) struct Series {
 }
 
 /// Gain of a law, on all runs and cross-validated between runs.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(in super::super) struct LawGain {
     pub(in super::super) gain: f64,
     pub(super) cross_validated: f64,
@@ -102,9 +102,7 @@ impl TermScores {
         let variance = NormalSizes::of(&scaled.squares, &scaled.scores)?.variance;
         let gain_of = |waves: &[usize]| {
             let places: Vec<usize> = waves.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect();
-            let part = |i: usize, j: usize| scaled.squares[(places[i], places[j])];
-            let squares = DMatrix::from_fn(places.len(), places.len(), part);
-            let scores = DVector::from_fn(places.len(), |i, _| scaled.scores[places[i]]);
+            let (squares, scores) = part_of(&scaled.squares, &scaled.scores, &places);
             let sizes = solved(&squares, &scores, variance.recip())?;
             Some((gained(&sizes, &squares, &scores), sizes))
         };
@@ -159,19 +157,18 @@ impl TermScores {
     }
 
     fn part(&self, terms: &[usize]) -> Self {
-        let part = |squares: &DMatrix<f64>, scores: &DVector<f64>| {
-            let square = |i: usize, j: usize| squares[(terms[i], terms[j])];
-            (
-                DMatrix::from_fn(terms.len(), terms.len(), square),
-                DVector::from_fn(terms.len(), |i, _| scores[terms[i]]),
-            )
-        };
-        let (squares, scores) = part(&self.squares, &self.scores);
+        self.with_all(|squares, scores| part_of(squares, scores, terms))
+    }
+
+    /// The same change of all matrices and scores.
+    fn with_all(
+        &self,
+        of: impl Fn(&DMatrix<f64>, &DVector<f64>) -> (DMatrix<f64>, DVector<f64>),
+    ) -> Self {
+        let (squares, scores) = of(&self.squares, &self.scores);
         let runs = self.runs.iter();
         Self {
-            runs: runs
-                .map(|(squares, scores)| part(squares, scores))
-                .collect(),
+            runs: runs.map(|(squares, scores)| of(squares, scores)).collect(),
             squares,
             scores,
             log_likelihood: self.log_likelihood,
@@ -185,22 +182,11 @@ impl TermScores {
     }
 
     fn scaled(&self, by: &DVector<f64>) -> Self {
-        let scale = |squares: &DMatrix<f64>, scores: &DVector<f64>| {
+        self.with_all(|squares, scores| {
             let squares =
                 DMatrix::from_fn(by.len(), by.len(), |i, j| by[i] * squares[(i, j)] * by[j]);
             (squares, by.component_mul(&scores.rows(0, by.len())))
-        };
-        let (squares, scores) = scale(&self.squares, &self.scores);
-        Self {
-            runs: self
-                .runs
-                .iter()
-                .map(|(squares, scores)| scale(squares, scores))
-                .collect(),
-            squares,
-            scores,
-            log_likelihood: self.log_likelihood,
-        }
+        })
     }
 
     /// The gain of the most probable amplitudes, and the sum over the runs of the gains of those fitted to all other
@@ -218,6 +204,19 @@ impl TermScores {
         }
         Some((gain, cross_validated))
     }
+}
+
+/// The matrix and the scores of some terms.
+fn part_of(
+    squares: &DMatrix<f64>,
+    scores: &DVector<f64>,
+    terms: &[usize],
+) -> (DMatrix<f64>, DVector<f64>) {
+    let square = |i: usize, j: usize| squares[(terms[i], terms[j])];
+    (
+        DMatrix::from_fn(terms.len(), terms.len(), square),
+        DVector::from_fn(terms.len(), |i, _| scores[terms[i]]),
+    )
 }
 
 fn gained(sizes: &DVector<f64>, squares: &DMatrix<f64>, scores: &DVector<f64>) -> f64 {

@@ -36,7 +36,7 @@ fn changed_lines(set: &DataSet, report: &Report) -> Result<String, Error> {
         (&robot.file, text, better.text)
     } else {
         let source = recording::source(set);
-        let better = source.improved(&report, None, &source.file)?.spec;
+        let better = source.improved(&report, None, &source.file)?.text;
         (&set.spec.file, source.text, better)
     };
     Ok(unified(file, file, &before, &after))
@@ -113,31 +113,22 @@ impl Library {
         texts.collect::<Vec<_>>().join("\n")
     }
 
-    /// Diagnoses a data set; `stage` is called with the name of each step.
+    /// Diagnoses a data set, or judges it against recordings of the same rig before; `stage` is called with the name of each
+    /// step.
     pub fn diagnose(
         &self,
+        before: Option<&DataSet>,
         set: &DataSet,
         options: &Options,
         stage: impl FnMut(&'static str),
     ) -> Result<Report, Error> {
-        recording::check(set)?;
-        Ok(diagnose::diagnose(set, &self.effects, options, stage)?)
-    }
-}
-
-impl Library {
-    /// Judges recordings against those of the same rig before; `stage` is called with the name of each step.
-    pub fn against(
-        &self,
-        before: &DataSet,
-        now: &DataSet,
-        options: &Options,
-        stage: impl FnMut(&'static str),
-    ) -> Result<Report, Error> {
-        recording::check(before)?;
-        recording::check(now)?;
         let effects = &self.effects;
-        Ok(diagnose::against(before, now, effects, options, stage)?)
+        before.map_or(Ok(()), recording::check)?;
+        recording::check(set)?;
+        Ok(match before {
+            Some(before) => diagnose::against(before, set, effects, options, stage)?,
+            None => diagnose::diagnose(set, effects, options, stage)?,
+        })
     }
 }
 

@@ -11,7 +11,7 @@ mod robot;
 use appell_recordings::DataSet;
 use appell_runtime::model::Quantity;
 use nalgebra::DMatrix;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 pub use crate::gap_report::json as diagnosis;
 pub use crate::steady::chart::json as chart;
@@ -24,30 +24,6 @@ pub use motion::{extrema, motion};
 pub use recording::recording;
 pub use robot::robot;
 
-use crate::capture::Converted;
-use crate::check::{Checked, Thorough};
-use crate::control::attraction::Explored;
-
-/// Disturbed motions and their fates.
-pub fn attraction(region: &Explored<'_>) -> Value {
-    region.json()
-}
-
-/// A checked spec.
-pub fn check(checked: &Checked) -> Value {
-    checked.to_json()
-}
-
-/// The numerical check of a spec.
-pub fn thorough(thorough: &Thorough) -> Value {
-    thorough.to_json()
-}
-
-/// A converted motion capture.
-pub fn capture(converted: &Converted) -> Value {
-    converted.to_json()
-}
-
 /// A result about a data set, with numbers of a robot under the names of its file.
 pub fn in_names_of(set: &DataSet, value: Value) -> Value {
     match value {
@@ -57,21 +33,27 @@ pub fn in_names_of(set: &DataSet, value: Value) -> Value {
             .map(|value| in_names_of(set, value))
             .collect(),
         Value::Object(fields) => {
-            let fields = fields
-                .into_iter()
-                .map(|(key, value)| (key, in_names_of(set, value)));
-            Value::Object(fields.collect())
+            let fields = fields.into_iter();
+            object(fields.map(|(key, value)| (key, in_names_of(set, value))))
         }
         other => other,
     }
 }
 
+/// Fields by their keys.
+pub(crate) fn object<K: ToString>(fields: impl IntoIterator<Item = (K, Value)>) -> Value {
+    let fields = fields.into_iter();
+    Value::Object(
+        fields
+            .map(|(key, value)| (key.to_string(), value))
+            .collect(),
+    )
+}
+
 /// Values by the names of their quantities.
-pub(crate) fn named(quantities: &[Quantity], values: &[f64]) -> Map<String, Value> {
+pub(crate) fn named(quantities: &[Quantity], values: &[f64]) -> Value {
     let pairs = quantities.iter().zip(values);
-    pairs
-        .map(|(quantity, &value)| (quantity.name.to_string(), json!(value)))
-        .collect()
+    object(pairs.map(|(quantity, &value)| (&quantity.name, json!(value))))
 }
 
 /// The rows of a matrix.
@@ -82,7 +64,7 @@ pub(crate) fn rows(matrix: &DMatrix<f64>) -> Value {
 }
 
 /// The names of quantities.
-pub(crate) fn names(quantities: &[Quantity]) -> Vec<&str> {
+pub fn names(quantities: &[Quantity]) -> Vec<&str> {
     let names = quantities.iter().map(|quantity| quantity.name.as_ref());
     names.collect()
 }

@@ -358,5 +358,5 @@ pub fn diagnose(
     options: &gap::Options,
     stage: impl FnMut(&'static str),
 ) -> Result<gap::Report, Error> {
-    diagnosis::Library::shipped()?.diagnose(set, options, stage)
+    diagnosis::Library::shipped()?.diagnose(None, set, options, stage)
 }

@@ -17,7 +17,7 @@ fn a_law_about_an_advancing_motion_settles() {
     let grid = "x=-1..1/2";
     let explored =
         attraction::explore(model.equations(), &setup, &design, grid, 5.0, &|_, _| {}).unwrap();
-    let fates = &appell::json::attraction(&explored)["fates"];
+    let fates = &explored.to_json()["fates"];
     assert_eq!(fates, &serde_json::json!(["settled", "settled", "settled"]));
 }
 

@@ -90,7 +90,7 @@ impl Thorough {
     }
 
     /// The comparison as JSON.
-    pub(crate) fn to_json(&self) -> Value {
+    pub fn to_json(&self) -> Value {
         let comparison = |comparison: &Comparison| {
             let mut entry = json!({
                 "against": comparison.against.word(), "quantity": comparison.quantity,

@@ -206,7 +206,7 @@ impl Explored<'_> {
     }
 
     /// The results as JSON, in SI.
-    pub(crate) fn json(&self) -> Value {
+    pub fn to_json(&self) -> Value {
         let axes = self.fates.axes.iter().zip(&self.fates.centre);
         let axes = axes.map(|(axis, centre)| {
             json!({
@@ -268,19 +268,14 @@ impl Explored<'_> {
 mod tests {
     use super::*;
 
-    const TIMES: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
-
     #[test]
-    fn an_advancing_output_settles_on_its_motion() {
+    fn an_output_settles_on_its_motion_or_its_value() {
+        let times = [0.0, 1.0, 2.0, 3.0];
         let advancing = |t: f64| 2.0 + 5.0 * t;
-        assert!(has_settled(&TIMES, &[2.5, 7.2, 12.1, 17.001], advancing));
-        assert!(!has_settled(&TIMES, &[2.5, 2.0, 2.0, 2.0], advancing));
-    }
-
-    #[test]
-    fn a_constant_output_settles_on_its_value() {
+        assert!(has_settled(&times, &[2.5, 7.2, 12.1, 17.001], advancing));
+        assert!(!has_settled(&times, &[2.5, 2.0, 2.0, 2.0], advancing));
         let constant = |_: f64| 1.0;
-        assert!(has_settled(&TIMES, &[2.0, 1.5, 1.1, 1.01], constant));
-        assert!(!has_settled(&TIMES, &[2.0, 1.5, 1.1, 1.1], constant));
+        assert!(has_settled(&times, &[2.0, 1.5, 1.1, 1.01], constant));
+        assert!(!has_settled(&times, &[2.0, 1.5, 1.1, 1.1], constant));
     }
 }

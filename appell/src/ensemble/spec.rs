@@ -23,12 +23,6 @@ pub(super) enum Quantity {
     Output(usize, bool),
 }
 
-/// A quantity defined by the study.
-pub(super) struct Own<'s> {
-    pub(super) name: &'s Text,
-    pub(super) unit: &'s Text,
-}
-
 /// The model of a spec with the quantities of a study.
 pub(super) struct Extended {
     pub(super) model: Arc<Model>,
@@ -40,14 +34,18 @@ pub(super) struct Extended {
 pub(super) fn extended(
     reading: &mut Reading<'_>,
     source: &Source,
-    own: &[Own<'_>],
 ) -> Result<Option<Extended>, Error> {
     let base = appell_spec::load(&source.file, &source.text)?.mechanism;
     let mut composition = Composition::new(&source.text).map_err(Error::computation)?;
     let before = reading.findings.len();
-    for Own { name, unit } in own {
+    // Quantities that the study defines are those with a unit.
+    let study = reading.study;
+    let varied = study.vary.iter().map(|vary| (&vary.name, &vary.unit));
+    let noises = study.noise.iter().map(|noise| (&noise.name, &noise.unit));
+    for (name, unit) in varied.chain(noises) {
+        let Some(unit) = unit else { continue };
         if let Err(error) = units::parse(&unit.text) {
-            reading.tell(Code::UnknownUnit, error.to_string(), *unit, "");
+            reading.tell(Code::UnknownUnit, error.to_string(), unit, "");
             continue;
         }
         let fragment = format!(

@@ -4,9 +4,9 @@ use appell_analysis::control::controllability::Controllability;
 use appell_analysis::control::sampled::Sampling;
 use appell_runtime::model::{ModelInfo, Quantity};
 use nalgebra::Complex;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use super::{named, rows};
+use super::{named, object, rows};
 use crate::control::Schedule;
 use crate::control::design::{Design, DesignedGains};
 
@@ -14,18 +14,11 @@ use crate::control::design::{Design, DesignedGains};
 pub fn design(info: &ModelInfo, design: &Design) -> Value {
     let states = chosen(&info.states, &design.equations.states);
     let outputs = chosen(&info.states, &design.outputs);
-    let substituted: Map<String, Value> = design
-        .subsystem
-        .substituted
-        .iter()
-        .map(|(state, factors)| {
-            let factors = outputs
-                .iter()
-                .cloned()
-                .zip(factors.iter().map(|f| json!(f)));
-            (states[*state].clone(), Value::Object(factors.collect()))
-        })
-        .collect();
+    let substituted = design.subsystem.substituted.iter();
+    let substituted = substituted.map(|(state, factors)| {
+        let factors = outputs.iter().zip(factors.iter().map(|f| json!(f)));
+        (&states[*state], object(factors))
+    });
     json!({
         "schema": "control/1",
         "mechanism": info.name,
@@ -42,7 +35,7 @@ pub fn design(info: &ModelInfo, design: &Design) -> Value {
             "order": outputs,
             "A": rows(&design.subsystem.system.a),
             "B": rows(&design.subsystem.system.b),
-            "substituted": substituted,
+            "substituted": object(substituted),
         },
         "law": design.law.as_ref().map(law_json),
     })

@@ -6,57 +6,47 @@ use appell_ensemble::statistics::sensitivity::Index;
 use appell_ensemble::summary::{Number, PARTS, Summary};
 use serde_json::{Value, json};
 
+use super::object;
+
 /// Statistics in SI; `columns` are those of the rows.
 pub fn ensemble(columns: &[Column], summary: &Summary) -> Value {
     let name = |column: usize| columns[column].name.as_str();
-    let of = |is: fn(&Role) -> bool| -> serde_json::Map<String, Value> {
+    let of = |is: fn(&Role) -> bool| {
         let numbers = summary.numbers.iter();
         let own = numbers.filter(|number| is(&columns[number.column].role));
-        own.map(|n| (name(n.column).to_owned(), number(n)))
-            .collect()
+        object(own.map(|n| (name(n.column), number(n))))
     };
-    let events: serde_json::Map<String, Value> = summary
-        .events
-        .iter()
-        .map(|event| {
-            let told = json!({
-                "cases": event.happened,
-                "of": event.of,
-                "probability": event.happened as f64 / event.of as f64,
-                "wilson_95": event.wilson,
-                "exact_95": event.exact,
-            });
-            (name(event.column).to_owned(), told)
-        })
-        .collect();
-    let courses: serde_json::Map<String, Value> = summary
-        .courses
-        .iter()
-        .map(|course| {
-            let told = json!({
-                "t_s": course.times,
-                "mean": course.mean,
-                "quantiles": PARTS,
-                "bands": course.bands,
-            });
-            (course.name.clone(), told)
-        })
-        .collect();
-    let mut effects = serde_json::Map::new();
-    for effect in &summary.effects {
+    let events = summary.events.iter().map(|event| {
+        let told = json!({
+            "cases": event.happened,
+            "of": event.of,
+            "probability": event.happened as f64 / event.of as f64,
+            "wilson_95": event.wilson,
+            "exact_95": event.exact,
+        });
+        (name(event.column), told)
+    });
+    let courses = summary.courses.iter().map(|course| {
+        let told = json!({
+            "t_s": course.times,
+            "mean": course.mean,
+            "quantiles": PARTS,
+            "bands": course.bands,
+        });
+        (&course.name, told)
+    });
+    let effects = summary.effects.iter().map(|effect| {
         let index = |index: Index| json!({ "value": index.value, "interval_95": index.interval });
-        let mut own = serde_json::Map::new();
-        for (factor, ends) in effect.ends.iter().enumerate() {
-            let indices = effect.indices.as_ref().and_then(|all| all.get(factor));
+        let own = effect.ends.iter().enumerate().map(|(factor, ends)| {
             let mut told = json!({ "quarters": ends });
-            if let Some(indices) = indices {
+            if let Some(indices) = effect.indices.as_ref().and_then(|all| all.get(factor)) {
                 told["first"] = index(indices.first);
                 told["total"] = index(indices.total);
             }
-            own.insert(name(factor).to_owned(), told);
-        }
-        effects.insert(name(effect.column).to_owned(), Value::Object(own));
-    }
+            (name(factor), told)
+        });
+        (name(effect.column), object(own))
+    });
     let early: Vec<Value> = summary
         .early
         .iter()
@@ -70,9 +60,9 @@ pub fn ensemble(columns: &[Column], summary: &Summary) -> Value {
         "ended_early": early,
         "factors": of(|role| matches!(role, Role::Factor(_))),
         "kept": of(|role| matches!(role, Role::Value | Role::When)),
-        "events": events,
-        "courses": courses,
-        "effects": effects,
+        "events": object(events),
+        "courses": object(courses),
+        "effects": object(effects),
         "rare": summary.rare.as_ref().map(|(event, found)| json!({
             "event": event,
             "probability": found.value,

@@ -2,9 +2,9 @@
 
 use appell_runtime::Trajectory;
 use appell_runtime::simulate::{Breach, Limit};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use super::named;
+use super::{named, object};
 
 /// The summary of a motion; `failure` is the reason of an early end.
 pub fn motion(trajectory: &Trajectory, failure: Option<&str>) -> Value {
@@ -19,17 +19,12 @@ pub fn motion(trajectory: &Trajectory, failure: Option<&str>) -> Value {
     };
     let states = info.state_len();
     let all = trajectory.columns();
-    let extrema: Map<String, Value> = all
-        .iter()
-        .enumerate()
-        .map(|(column, quantity)| {
-            let [min, max] = extrema(trajectory, column);
-            (
-                quantity.name.to_string(),
-                json!({ "min": min, "max": max, "max_abs": max.abs().max(min.abs()) }),
-            )
-        })
-        .collect();
+    let extrema = all.iter().enumerate().map(|(column, quantity)| {
+        let [min, max] = extrema(trajectory, column);
+        let max_abs = max.abs().max(min.abs());
+        let told = json!({ "min": min, "max": max, "max_abs": max_abs });
+        (&quantity.name, told)
+    });
     json!({
         "schema": "simulated/1",
         "mechanism": info.name,
@@ -41,7 +36,7 @@ pub fn motion(trajectory: &Trajectory, failure: Option<&str>) -> Value {
         "initial_state": named(&all[..states], row(0)),
         "final_state": named(&all[..states], row(last)),
         "final_values": named(&all[states..], row(last).get(states..).unwrap_or_default()),
-        "extrema": extrema,
+        "extrema": object(extrema),
         "statistics": {
             "steps": trajectory.statistics.steps,
             "rejected": trajectory.statistics.rejected,

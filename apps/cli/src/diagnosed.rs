@@ -10,6 +10,7 @@ use appell_report::gap::{
     Headline, before_sentence, divided, doubts, events, hints, is_determined, joined, law_sentence,
     left_of_forces, left_out, percent, ranges, said, share, short,
 };
+use appell_report::row;
 use appell_report::text::number;
 
 /// Widest cell of a table that others are aligned with.
@@ -168,35 +169,25 @@ fn commands(text: &mut String, number: usize, apply: &Apply) {
 
 /// The table of several rigs.
 pub(crate) fn table(rigs: &[Rig], reports: &Path) -> String {
-    let heading = ["rig", "verdict", "which", "P", "closed", "budget"].map(str::to_owned);
-    let rows = rigs.iter().map(|rig| match &rig.outcome {
-        Ok(summary) => {
-            let (first, probability) = summary.first();
-            let closed = summary.how_far.as_ref().and_then(|far| far.closed);
-            let closed = closed.map_or_else(|| "-".to_owned(), |c| format!("{:.1} %", 100.0 * c));
-            [
-                rig.name.clone(),
-                summary.verdict.replace('_', " "),
+    let mut rows = vec![row!["rig", "verdict", "which", "P", "closed", "budget"]];
+    rows.extend(rigs.iter().map(|rig| match &rig.outcome {
+        Ok(report) => {
+            let (first, probability) = report.first();
+            let closed = report.how_far.as_ref().and_then(|far| far.closed);
+            row![
+                rig.name,
+                report.verdict.replace('_', " "),
                 first,
                 format!("{:.1} %", 100.0 * probability),
-                closed,
-                summary.budget(),
+                closed.map_or_else(|| "-".to_owned(), |c| format!("{:.1} %", 100.0 * c)),
+                report.budget()
             ]
         }
         Err(reason) => {
-            let reason = reason.lines().next().unwrap_or_default().to_owned();
-            let empty = String::new;
-            [
-                rig.name.clone(),
-                "error".to_owned(),
-                reason,
-                empty(),
-                empty(),
-                empty(),
-            ]
+            let reason = reason.lines().next().unwrap_or_default();
+            row![rig.name, "error", reason, "", "", ""]
         }
-    });
-    let rows: Vec<[String; 6]> = std::iter::once(heading).chain(rows).collect();
+    }));
     let wide = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
         // An error spans the columns that follow.

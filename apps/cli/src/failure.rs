@@ -84,7 +84,6 @@ fn of_library(error: &appell::Error) -> String {
 fn worded(error: &appell::Error) -> String {
     let text = match error {
         appell::Error::Request { field, message } => about(Some(*field), message),
-        appell::Error::Design(error) => about(error.field, &error.message),
         appell::Error::At { place, source } => format!("at {place}: {}", worded(source)),
         other => about(other.field(), &other.to_string()),
     };

@@ -1,7 +1,6 @@
 //! `appell`: from a mechanism spec to equations of motion, numbers and motions.
 
 mod breaches;
-mod choice;
 mod commands;
 mod completion;
 mod design_report;

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use appell_gap::inverse::{Answer, Estimate};
 
+use appell_report::row;
 use appell_report::text::{number, table};
 
 /// The report as text tables.
@@ -23,28 +24,28 @@ pub(crate) fn text(answer: &Answer) -> String {
     if !answer.estimates.is_empty() {
         let _ = writeln!(text, "95 % intervals\n\n{}", estimates(&answer.estimates));
     }
-    let mut rows = vec![["column", "noise"].map(str::to_owned).to_vec()];
+    let mut rows = vec![row!["column", "noise"]];
     for (column, std) in &answer.noise {
-        rows.push(vec![column.clone(), format!("{std:.3e}")]);
+        rows.push(row![column, format!("{std:.3e}")]);
     }
     text + &table(&rows, 1..2)
 }
 
 fn estimates(estimates: &[Estimate]) -> String {
-    let heading = ["value", "nominal", "found", "from", "to", "unit", ""];
-    let mut rows = vec![heading.map(str::to_owned).to_vec()];
+    let mut rows = vec![row!["value", "nominal", "found", "from", "to", "unit", ""]];
     for estimate in estimates {
         let quantity = &estimate.quantity;
         let bias = if estimate.is_bias { "bias of " } else { "" };
-        let [low, high] = estimate.interval95.map(|end| number(quantity.to_unit(end)));
-        rows.push(vec![
+        let shown = |si: f64| number(quantity.to_unit(si));
+        let [low, high] = estimate.interval95.map(shown);
+        rows.push(row![
             format!("{bias}{}", quantity.name),
-            number(quantity.to_unit(estimate.nominal)),
-            number(quantity.to_unit(estimate.value)),
+            shown(estimate.nominal),
+            shown(estimate.value),
             low,
             high,
-            quantity.unit.to_string(),
-            remark(estimate).to_owned(),
+            quantity.unit,
+            remark(estimate)
         ]);
     }
     table(&rows, 1..5)

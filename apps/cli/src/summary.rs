@@ -4,6 +4,7 @@ use appell_runtime::Trajectory;
 
 use crate::breaches;
 use appell::json::extrema;
+use appell_report::row;
 use appell_report::text::{number, table};
 
 /// The summary as text: time, cost, and a table in the units of the spec.
@@ -12,25 +13,18 @@ pub(crate) fn text(trajectory: &Trajectory) -> String {
         return String::new();
     };
     let t_end = trajectory.times()[last];
-    let heading = [
-        "",
-        "start",
-        &format!("{} s", number(t_end)),
-        "smallest",
-        "largest",
-        "unit",
-    ];
-    let mut rows = vec![heading.map(str::to_owned).to_vec()];
+    let end = format!("{} s", number(t_end));
+    let mut rows = vec![row!["", "start", end, "smallest", "largest", "unit"]];
     for (column, quantity) in trajectory.columns().iter().enumerate() {
         let shown = |value: f64| number(quantity.to_unit(value));
         let [low, high] = extrema(trajectory, column);
-        rows.push(vec![
-            quantity.name.to_string(),
+        rows.push(row![
+            quantity.name,
             shown(trajectory.row(0)[column]),
             shown(trajectory.row(last)[column]),
             shown(low),
             shown(high),
-            quantity.unit.to_string(),
+            quantity.unit
         ]);
     }
     let cost = trajectory.statistics;

@@ -120,10 +120,9 @@ fn rig(written: &mut Written<'_>) -> Result<String, Error> {
         pictures: true,
         ..DiagnosisOptions::default()
     };
-    let spinner = progress::spinner("diagnosing");
-    let report = appell::diagnose(&set, &options, |stage| spinner.set_message(stage));
-    spinner.finish_and_clear();
-    let report = report?;
+    let report = progress::during("diagnosing", |spinner| {
+        appell::diagnose(&set, &options, |stage| spinner.set_message(stage))
+    })?;
     let about = "the missing effect, and how far it closes the gap";
     files::write(
         &written.place("gap.html", about),

@@ -127,7 +127,6 @@ impl Diagnose {
         };
         let library = self.library()?;
         let replaced = &library.warnings;
-        let spinner = progress::spinner("reading");
         let options = Options {
             pictures: self.html.is_some(),
             limits: self.limits(&set)?,
@@ -136,13 +135,10 @@ impl Diagnose {
             tolerance: self.tolerance,
             present: Vec::new(),
         };
-        let stage = |stage| spinner.set_message(stage);
-        let report = match &before {
-            Some(before) => library.against(before, &set, &options, stage),
-            None => library.diagnose(&set, &options, stage),
-        };
-        spinner.finish_and_clear();
-        let report = report?;
+        let report = progress::during("reading", |spinner| {
+            let stage = |stage| spinner.set_message(stage);
+            library.diagnose(before.as_ref(), &set, &options, stage)
+        })?;
         let warnings = appell::recording::warnings(&set);
         let mut next = None;
         if let Some(experiment) = &report.experiment {

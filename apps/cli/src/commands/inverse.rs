@@ -8,7 +8,6 @@ use appell_report::figure::Figure;
 use crate::failure::Error;
 use crate::output;
 use crate::{engine, picture, progress, relations};
-use appell::files;
 
 /// Computes the inputs of recorded motions, and parameters from input-free equations.
 ///
@@ -48,14 +47,13 @@ impl Inverse {
             free: self.free.clone(),
             biased: self.bias.clone(),
         };
-        let spinner = progress::spinner("evaluating the equations of motion");
-        let answer = model.inverse(&set, &options);
-        spinner.finish_and_clear();
-        let answer = answer?;
+        let answer = progress::during("evaluating the equations of motion", |_| {
+            model.inverse(&set, &options)
+        })?;
         let info = model.info();
-        if let Some(path) = &self.json {
-            files::write_json(path, &appell::json::inverse(info, &answer))?;
-        }
+        output::json(self.json.as_deref(), || {
+            appell::json::inverse(info, &answer)
+        })?;
         if let Some(path) = &self.plot {
             picture::write(path, &Figure::of_inputs(info, &answer).to_svg())?;
         }

@@ -14,7 +14,7 @@ use appell_runtime::{Simulation, Trajectory};
 
 use crate::inputs::controller::{Controller, Plan, Wiring};
 use crate::inputs::{feedback, tabulated};
-use crate::setup::{Assignment, Setup};
+use crate::setup::{Assignment, Setup, assigning};
 use crate::{Error, Field};
 
 /// Maximum number of rows of a trajectory.
@@ -138,25 +138,13 @@ impl Motion {
         }
     }
 
-    /// Sets a parameter.
-    #[must_use]
-    pub fn set(mut self, name: &str, value: impl ToString) -> Self {
-        self.parameters.push(Assignment::new(name, value));
-        self
-    }
-
-    /// Sets an initial value.
-    #[must_use]
-    pub fn initial(mut self, name: &str, value: impl ToString) -> Self {
-        self.initial.push(Assignment::new(name, value));
-        self
-    }
-
-    /// Drives an input by an expression in t, states and parameters.
-    #[must_use]
-    pub fn input(mut self, name: &str, expression: impl ToString) -> Self {
-        self.inputs.push(Assignment::new(name, expression));
-        self
+    assigning! {
+        /// Sets a parameter.
+        set to parameters;
+        /// Sets an initial value.
+        initial to initial;
+        /// Drives an input by an expression in t, states and parameters.
+        input to inputs;
     }
 
     /// Drives inputs by a function of time and state, in SI, that writes all declared inputs.

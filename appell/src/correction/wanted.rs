@@ -135,61 +135,40 @@ impl<'h> Wanted<'h> {
 
     fn refitted(&self, one: &Refitted) -> Option<Change> {
         let (element, attribute) = element_of(&one.name)?;
-        let to = Amount::To(one.value);
-        let component = AXES.iter().position(|axis| {
-            let last = attribute.strip_prefix("com.");
-            last.or_else(|| attribute.strip_prefix("gravity.")) == Some(*axis)
-        });
-        let of_body = matches!(attribute, "mass" | "inertia" | "com.x" | "com.y" | "com.z");
-        if of_body && self.merged.contains(element) {
+        let (amount, factor) = (Amount::To(one.value), one.value);
+        let is_of_body = matches!(attribute, "mass" | "inertia" | "com.x" | "com.y" | "com.z");
+        if is_of_body && self.merged.contains(element) {
             return None;
         }
-        let element = element.to_owned();
+        // It is one of these.
+        let [body, joint, actuator] = [element; 3].map(str::to_owned);
         Some(match attribute {
-            "mass" => Change::Mass {
-                body: element,
-                amount: to,
-            },
-            "inertia" => Change::Inertia {
-                body: element,
-                factor: one.value,
-            },
+            "mass" => Change::Mass { body, amount },
+            "inertia" => Change::Inertia { body, factor },
             "com.x" | "com.y" | "com.z" => {
-                let mut amounts = [STAYS; 3];
-                amounts[component?] = to;
-                Change::Centre {
-                    body: element,
-                    amounts,
-                }
+                let axis = attribute.strip_prefix("com.")?;
+                let amounts = AXES.map(|own| if own == axis { amount } else { STAYS });
+                Change::Centre { body, amounts }
             }
-            "kp" => Change::Kp {
-                actuator: element,
-                amount: to,
-            },
-            "kv" => Change::Kv {
-                actuator: element,
-                amount: to,
-            },
-            "gear" => Change::Gear {
-                actuator: element,
-                amount: to,
-            },
-            "forcerange" => Change::ForceRange {
-                actuator: element,
+            "kp" => Change::Kp { actuator, amount },
+            "kv" => Change::Kv { actuator, amount },
+            "gear" => Change::Gear { actuator, amount },
+            "forcerange" => {
                 // Bounds of different size have a common factor.
-                amount: match one.unit.as_str() {
-                    "1" => Amount::Times(one.value),
-                    _ => to,
-                },
-            },
+                let amount = match one.unit.as_str() {
+                    "1" => Amount::Times(factor),
+                    _ => amount,
+                };
+                Change::ForceRange { actuator, amount }
+            }
             _ if element == "option" => Change::Gravity(self.gravity()),
             _ => {
                 let mut known = JOINT_NUMBERS.iter();
-                let (_, number) = known.find(|(word, _)| *word == attribute)?;
+                let (_, attribute) = *known.find(|(word, _)| *word == attribute)?;
                 Change::Joint {
-                    joint: element,
-                    attribute: *number,
-                    amount: to,
+                    joint,
+                    attribute,
+                    amount,
                 }
             }
         })
@@ -419,46 +398,49 @@ impl<'h> Wanted<'h> {
 
     /// The changes by an effect on actuators; `None` for another effect, and in it for an unknown actuator.
     fn of_actuators(&self, effect: &str, kind: &str, site: &str) -> Option<Vec<Option<Change>>> {
-        let by_actuators = |size: &str, change: &dyn Fn(&ActuatorName, f64) -> Change| {
+        let by_actuators = |size: &str, change: fn(&Self, &ActuatorName, String, f64) -> Change| {
             let values = self.at_sites(effect, site, size).into_iter();
-            let changes = values.map(|(site, value)| Some(change(self.actuator(&site)?, value)));
+            let changes = values.map(|(site, value)| {
+                let own = self.actuator(&site)?;
+                Some(change(self, own, own.name.clone(), value))
+            });
             changes.collect::<Vec<Option<Change>>>()
         };
         let changes = match kind {
-            "actuator_gain" => by_actuators("gain", &|own, gain| Change::Gain {
-                actuator: own.name.clone(),
-                factor: 1.0 + gain,
+            "actuator_gain" => by_actuators("gain", |_, _, actuator, gain| {
+                let factor = 1.0 + gain;
+                Change::Gain { actuator, factor }
             }),
             // Of a servo the bias of its force, of all others that of the command.
-            "actuator_bias" => by_actuators("bias", &|own, bias| Change::Bias {
-                actuator: own.name.clone(),
-                add: if own.follows_motion {
-                    bias / self.gear(own)
+            "actuator_bias" => by_actuators("bias", |wanted, own, actuator, bias| {
+                let add = if own.follows_motion {
+                    bias / wanted.gear(own)
                 } else {
                     bias * own.gain
-                },
+                };
+                Change::Bias { actuator, add }
             }),
             // Beside a lag or a delay that the file has.
-            "actuator_lag" => by_actuators("time_constant", &|own, more| Change::Lag {
-                actuator: own.name.clone(),
-                seconds: own.lag + more,
+            "actuator_lag" => by_actuators("time_constant", |_, own, actuator, more| {
+                let seconds = own.lag + more;
+                Change::Lag { actuator, seconds }
             }),
-            "actuator_delay" => by_actuators("delay", &|own, more| Change::Delay {
-                actuator: own.name.clone(),
-                seconds: own.delay + more,
+            "actuator_delay" => by_actuators("delay", |_, own, actuator, more| {
+                let seconds = own.delay + more;
+                Change::Delay { actuator, seconds }
             }),
             // Likewise.
-            "actuator_saturation" | "saturation" => by_actuators("limit", &|own, limit| {
-                let (middle, half) = if own.follows_motion {
-                    (0.0, limit / self.gear(own).abs())
-                } else {
-                    (own.bias, limit * own.gain.abs())
-                };
-                Change::ForceLimit {
-                    actuator: own.name.clone(),
-                    range: [middle - half, middle + half],
-                }
-            }),
+            "actuator_saturation" | "saturation" => {
+                by_actuators("limit", |wanted, own, actuator, limit| {
+                    let (middle, half) = if own.follows_motion {
+                        (0.0, limit / wanted.gear(own).abs())
+                    } else {
+                        (own.bias, limit * own.gain.abs())
+                    };
+                    let range = [middle - half, middle + half];
+                    Change::ForceLimit { actuator, range }
+                })
+            }
             _ => return None,
         };
         Some(changes)

@@ -18,14 +18,6 @@ const WIDEST: usize = 60;
 /// Number of hypotheses in the summary.
 const LISTED: usize = 3;
 
-/// The commands that write the diagnosed effect into the spec.
-pub(crate) struct Apply {
-    /// The command that writes the report, if none was written.
-    pub(crate) before: Option<String>,
-    /// The command that reads it.
-    pub(crate) command: String,
-}
-
 /// Fits that did not converge, if they may have changed the verdict.
 fn failures(text: &mut String, report: &Report) {
     let is_listed = |effects: &[String]| {
@@ -52,8 +44,8 @@ fn failures(text: &mut String, report: &Report) {
     }
 }
 
-/// The summary, about ten lines.
-pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> String {
+/// The summary, about ten lines; the commands `apply` write the diagnosed effect into the spec.
+pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &[String]) -> String {
     let mut text = String::new();
     let Headline {
         cause,
@@ -73,7 +65,11 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     }
     let _ = writeln!(text, "  change    {}", change.join("\n            "));
     if let Some(number) = applied {
-        commands(&mut text, number, apply);
+        let _ = write!(text, "            {}", apply.join("\n            "));
+        if number > 1 {
+            let _ = write!(text, " --hypothesis {number}");
+        }
+        text.push('\n');
     }
     if let Some(error) = error {
         let _ = writeln!(text, "  error     {error}");
@@ -152,19 +148,6 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
         );
     }
     text
-}
-
-/// The commands that write a hypothesis into the spec.
-fn commands(text: &mut String, number: usize, apply: &Apply) {
-    // Writing to a string cannot fail.
-    if let Some(command) = &apply.before {
-        let _ = writeln!(text, "            {command}");
-    }
-    let hypothesis = match number {
-        1 => String::new(),
-        number => format!(" --hypothesis {number}"),
-    };
-    let _ = writeln!(text, "            {}{hypothesis}", apply.command);
 }
 
 /// The table of several rigs.

@@ -1,6 +1,5 @@
 //! `appell`: from a mechanism spec to equations of motion, numbers and motions.
 
-mod breaches;
 mod commands;
 mod completion;
 mod design_report;
@@ -14,7 +13,6 @@ mod motions;
 mod output;
 mod picture;
 mod progress;
-mod relations;
 mod summary;
 
 use std::process::ExitCode;

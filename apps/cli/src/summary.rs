@@ -1,8 +1,8 @@
 //! Summary of a simulation.
 
 use appell_runtime::Trajectory;
+use appell_runtime::simulate::Breach;
 
-use crate::breaches;
 use appell::json::extrema;
 use appell_report::row;
 use appell_report::text::{number, table};
@@ -38,7 +38,7 @@ pub(crate) fn text(trajectory: &Trajectory) -> String {
     };
     let title = &trajectory.info().title;
     let rows = table(&rows, 1..5);
-    let breaches = breaches::text(trajectory);
+    let breaches = breaches(trajectory);
     format!("{title}\n{} s{cost}\n{rows}{breaches}", number(t_end))
 }
 
@@ -48,4 +48,20 @@ pub(crate) fn rests(trajectory: &Trajectory) -> bool {
         let [low, high] = extrema(trajectory, column);
         high - low <= 0.0
     })
+}
+
+/// Number of breaches listed one by one.
+const MOST_SHOWN: usize = 10;
+
+/// Where a motion leaves the range of validity of its model, a line each.
+fn breaches(trajectory: &Trajectory) -> String {
+    let breaches = &trajectory.breaches;
+    let line = |breach: &Breach| {
+        let what = breach.describe(trajectory.info());
+        format!("  at t = {} s {what}\n", number(breach.t))
+    };
+    let more = breaches.len().saturating_sub(MOST_SHOWN);
+    let rest = (more > 0).then(|| format!("  and {more} more; `--json` lists all\n"));
+    let shown = breaches.iter().take(MOST_SHOWN).map(line);
+    shown.chain(rest).collect()
 }

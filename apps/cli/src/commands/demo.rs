@@ -11,7 +11,7 @@ use appell_report::figure::Figure;
 use appell_runtime::integrate::Options;
 
 use super::simulate::{simulated, write_csv};
-use crate::diagnosed::{self, Apply};
+use crate::diagnosed;
 use crate::output::shell;
 use crate::{engine, output, progress, summary};
 
@@ -132,12 +132,7 @@ fn rig(written: &mut Written<'_>) -> Result<String, Error> {
     let json = written.place("gap.json", about);
     files::write_json(&json, &appell::json::diagnosis(&report, None, &[]))?;
     let spec = shell(&set.spec.file);
-    let apply = Apply {
-        before: None,
-        command: format!(
-            "appell apply {spec} --report {}",
-            shell(&json.to_string_lossy())
-        ),
-    };
-    Ok(diagnosed::text(&report, None, &apply))
+    let json = shell(&json.to_string_lossy());
+    let apply = format!("appell apply {spec} --report {json}");
+    Ok(diagnosed::text(&report, None, &[apply]))
 }

@@ -9,7 +9,7 @@ use appell_gap::diagnose::{Limit, Options};
 use appell_recordings::{DataSet, Spec};
 use serde_json::Value;
 
-use crate::diagnosed::{self, Apply};
+use crate::diagnosed;
 use crate::failure::Error;
 use crate::output::{self, shell};
 use crate::progress;
@@ -248,8 +248,9 @@ impl Diagnose {
         free.map(|name| report.with_file_name(name))
     }
 
-    /// The command that writes the diagnosed effect into the spec, after the one that writes the report.
-    fn apply(&self, set: &DataSet) -> Apply {
+    /// The command that writes the diagnosed effect into the spec, after the one that writes the report if none was
+    /// written.
+    fn apply(&self, set: &DataSet) -> Vec<String> {
         let mut shipped = appell_models::ALL.iter();
         let is_shipped = shipped.any(|shipped| shipped.spec == set.spec.text);
         let model = match &self.model {
@@ -258,30 +259,17 @@ impl Diagnose {
             None => &set.spec.file,
         };
         let model = shell(model);
-        let apply = |report: &Path| {
-            let report = shell(&report.to_string_lossy());
-            format!("appell apply {model} --report {report}")
-        };
+        let apply = |report: &str| format!("appell apply {model} --report {report}");
         let written = self.json.as_deref();
         if let Some(report) = written.filter(|path| !files::is_stdout(path)) {
-            return Apply {
-                before: None,
-                command: apply(report),
-            };
+            return vec![apply(&shell(&report.to_string_lossy()))];
         }
         let data = self.data.iter().map(|path| shell(&path.to_string_lossy()));
         let data = data.collect::<Vec<_>>().join(" ");
-        let given = self
-            .model
-            .as_ref()
-            .map(|model| format!("{} ", shell(model)));
+        let given = (self.model.as_ref()).map(|model| format!("{} ", shell(model)));
         let given = given.unwrap_or_default();
-        Apply {
-            before: Some(format!(
-                "appell diagnose {given}--data {data} --json gap.json"
-            )),
-            command: apply(Path::new("gap.json")),
-        }
+        let diagnose = format!("appell diagnose {given}--data {data} --json gap.json");
+        vec![diagnose, apply("gap.json")]
     }
 
     /// A note if an existing file was kept.

@@ -138,24 +138,15 @@ impl EnsembleCommand {
         go_on();
         let mut ended = Ended::Done;
         if cases > 0 {
-            let bar = progress::cases(cases, "cases");
-            let done = |cases| bar.inc(cases);
-            let watch = Watch {
-                go_on: &go_on,
-                done: &done,
-            };
-            ended = ensemble.fill(store, &missing, running, watch)?;
-            bar.finish_and_clear();
+            ended = under_bar(cases, "cases", &go_on, |watch| {
+                ensemble.fill(store, &missing, running, watch)
+            })?;
         }
         if !replicates.is_empty() && ended == Ended::Done {
-            let bar = progress::cases(replicates.len() as u64, "replicates of the rare event");
-            let done = |replicates| bar.inc(replicates);
-            let watch = Watch {
-                go_on: &go_on,
-                done: &done,
-            };
-            ended = ensemble.fill_replicates(store, &replicates, running, watch)?;
-            bar.finish_and_clear();
+            let (count, kind) = (replicates.len() as u64, "replicates of the rare event");
+            ended = under_bar(count, kind, &go_on, |watch| {
+                ensemble.fill_replicates(store, &replicates, running, watch)
+            })?;
         }
         Ok(ended)
     }
@@ -199,6 +190,20 @@ impl EnsembleCommand {
         let text = format!("{}\nfigures: {}\n", ensemble::text(&about), page.display());
         output::print_beside(&text, &[&self.json])
     }
+}
+
+/// Runs with a progress bar.
+fn under_bar(
+    count: u64,
+    kind: &str,
+    go_on: &(dyn Fn() -> bool + Sync),
+    run: impl FnOnce(Watch<'_>) -> Result<Ended, appell::Error>,
+) -> Result<Ended, Error> {
+    let bar = progress::cases(count, kind);
+    let done = |some| bar.inc(some);
+    let ended = run(Watch { go_on, done: &done })?;
+    bar.finish_and_clear();
+    Ok(ended)
 }
 
 /// Whether a path is the address of an object store.

@@ -31,53 +31,56 @@ pub struct Explored<'a> {
     duration: f64,
 }
 
-/// Simulates a law from every disturbance of a grid such as `theta=-20deg..20deg/8,r=-10cm..10cm/8`;
-/// `progress` is called with the number of completed motions and their total.
-pub fn explore<'a>(
-    model: &dyn Model,
-    setup: &Setup<'a>,
-    design: &Design,
-    asked: &str,
-    duration: f64,
-    progress: &(dyn Fn(usize, usize) + Sync),
-) -> Result<Explored<'a>, Error> {
-    if !(duration.is_finite() && duration > 0.0) {
-        let message = format!("{duration} is not a positive number of seconds");
-        return Err(Error::request(Field::Duration, message));
-    }
-    let Some(law) = &design.law else {
-        let message = "a region of attraction needs a law; give poles or weights";
-        return Err(Error::request(Field::Attraction, message));
-    };
-    let axes = axes(setup, design, asked)?;
-    let count: usize = axes.iter().map(|axis| axis.values.len()).product();
-    if count > MOST {
-        let message = format!("{count} motions are too many; at most {MOST} are possible");
-        return Err(Error::request(Field::Attraction, message));
-    }
-    let settled = |motion: &Trajectory| {
-        design.outputs.iter().all(|&state| {
-            let column = motion
-                .column(&setup.info.states[state].name)
-                .unwrap_or_default();
-            has_settled(motion.times(), &column, |t| design.desired(state, t))
+impl crate::Model {
+    /// Which motions settle under a law, from a grid of disturbances of one or two states such as
+    /// `theta=-20deg..20deg/8,r=-10cm..10cm/8`, each simulated for `duration` seconds; `progress` is called
+    /// with the number of completed motions and their total.
+    pub fn attraction(
+        &self,
+        design: &Design,
+        grid: &str,
+        duration: f64,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Explored<'_>, Error> {
+        if !(duration.is_finite() && duration > 0.0) {
+            let message = format!("{duration} is not a positive number of seconds");
+            return Err(Error::request(Field::Duration, message));
+        }
+        let Some(law) = &design.law else {
+            let message = "a region of attraction needs a law; give poles or weights";
+            return Err(Error::request(Field::Attraction, message));
+        };
+        let (model, setup) = (self.equations(), self.setup()?);
+        let axes = axes(&setup, design, grid)?;
+        let count: usize = axes.iter().map(|axis| axis.values.len()).product();
+        if count > MOST {
+            let message = format!("{count} motions are too many; at most {MOST} are possible");
+            return Err(Error::request(Field::Attraction, message));
+        }
+        let settled = |motion: &Trajectory| {
+            design.outputs.iter().all(|&state| {
+                let column = motion
+                    .column(&setup.info.states[state].name)
+                    .unwrap_or_default();
+                has_settled(motion.times(), &column, |t| design.desired(state, t))
+            })
+        };
+        let region = Region {
+            model,
+            parameters: &design.p,
+            state: &design.x,
+            inputs: &|| closed(model, design, law, duration),
+            duration,
+            axes,
+            settled: &settled,
+        };
+        let fates = region.explore(&|done| progress(done, count));
+        Ok(Explored {
+            info: setup.info,
+            fates: fates.map_err(Error::computation)?,
+            duration,
         })
-    };
-    let region = Region {
-        model,
-        parameters: &design.p,
-        state: &design.x,
-        inputs: &|| closed(model, design, law, duration),
-        duration,
-        axes,
-        settled: &settled,
-    };
-    let fates = region.explore(&|done| progress(done, count));
-    Ok(Explored {
-        info: setup.info,
-        fates: fates.map_err(Error::computation)?,
-        duration,
-    })
+    }
 }
 
 /// Whether a state ends near its desired value, compared with its largest deviation.

@@ -144,7 +144,7 @@ pub fn design(
         return Err(turns(setup, &equations, turning));
     }
     let subsystem = reduce(&equations.system, &outputs)
-        .map_err(|error| remedies::reduction(error, &equations, setup))?;
+        .map_err(|error| remedies::reduction(&error, &equations, setup))?;
     let law = law(&subsystem, request)?;
     Ok(Design {
         x: point.x,

@@ -32,12 +32,12 @@ pub(super) fn operating_point(error: OperatingPointError, setup: &Setup<'_>) -> 
 
 /// About the outputs.
 pub(super) fn reduction(
-    error: ReductionError,
+    error: &ReductionError,
     equations: &MotionEquations,
     setup: &Setup<'_>,
 ) -> Error {
     let name = |place: &usize| setup.info.states[equations.states[*place]].name.as_ref();
-    let message = match &error {
+    let message = match error {
         ReductionError::Unmoved => {
             "the inputs affect none of the outputs at this operating point".to_owned()
         }

@@ -131,7 +131,7 @@ fn described(text: &str) -> Option<(&str, &str)> {
 fn recorded(description: &str, run: &str, name: &str, setup: &Setup<'_>) -> Result<Columns, Error> {
     // The spec may be in no file; a description of a robot has the names of its file.
     let text = setup.robot.map_or(setup.spec, |robot| &robot.text);
-    let mut set = recording::read_of(&Source::of(name, text), &[description.into()])?;
+    let mut set = recording::read_with(&[description.into()], Some(&Source::of(name, text)))?;
     recording::check_units(&set)?;
     let Some(place) = set.runs.iter().position(|own| own.name == run) else {
         let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();

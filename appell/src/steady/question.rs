@@ -5,7 +5,7 @@ use std::str::FromStr;
 use appell_analysis::{Point, Requirement, SteadyProblem, Term};
 use appell_runtime::model::Model;
 
-use super::{Resolved, term, value_in_range, value_of};
+use super::{Resolved, term, value_of};
 use crate::setup::{Assignment, Setup, assigning, unique};
 use crate::{Error, Field};
 
@@ -138,12 +138,12 @@ impl Question {
         unique(&self.fix, Field::Fix)?;
         for fixed in &self.fix {
             let term = term(setup, Field::Fix, &fixed.name)?;
-            let value = if self.ignore_ranges {
-                value_of(setup, term, Field::Fix, fixed)
-            } else {
-                value_in_range(setup, term, Field::Fix, fixed)
-            };
-            problem.fix(term, value?)?;
+            let value = value_of(setup, term, Field::Fix, fixed)?;
+            if let (Term::State(state), false) = (term, self.ignore_ranges) {
+                let within = setup.state_within(state, value);
+                within.map_err(|message| Error::request(Field::Fix, message))?;
+            }
+            problem.fix(term, value)?;
         }
         let along = self.along.as_ref();
         let along = along.map(|span| span.resolve(setup, Field::Along));

@@ -13,7 +13,8 @@ use appell_runtime::trajectory::{Extras, NotFinite};
 use appell_runtime::{Simulation, Trajectory};
 
 use crate::inputs::controller::{Controller, Plan, Wiring};
-use crate::inputs::{feedback, tabulated};
+use crate::inputs::feedback;
+use crate::inputs::tabulated::{self, Remarks};
 use crate::setup::{Assignment, Setup, assigning};
 use crate::{Error, Field};
 
@@ -97,21 +98,6 @@ pub struct Simulated {
     pub undefined: Option<String>,
     /// What there is to say about its inputs.
     pub remarks: Remarks,
-}
-
-/// Remarks on the inputs of a motion.
-#[derive(Debug, Clone, Default)]
-pub struct Remarks {
-    /// Whether neither inputs nor feedback drive the mechanism.
-    pub undriven: bool,
-    /// The time in s from which the last values of recorded inputs are held, if it comes before the end.
-    pub held_from: Option<f64>,
-    /// A remark on recorded inputs that are held by default.
-    pub smooth: Option<String>,
-    /// Coordinates in the first row of a recorded run whose inputs drive the motion, if it begins elsewhere.
-    pub begins: Option<String>,
-    /// What differs in that run from the other runs, and so from the model, a sentence for each parameter.
-    pub differs: Vec<String>,
 }
 
 impl Motion {

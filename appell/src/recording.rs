@@ -192,6 +192,14 @@ pub fn source(set: &DataSet) -> Source {
     }
 }
 
+/// The specs of models: shipped names, paths of specs or robot files.
+pub fn specs(models: &[String]) -> Result<Vec<Spec>, Error> {
+    let specs = models.iter();
+    specs
+        .map(|model| Ok(Spec::from(&Source::find(model)?)))
+        .collect()
+}
+
 /// The data set with warnings about units.
 fn with_doubts(mut set: DataSet) -> Result<DataSet, Error> {
     // With a wrong clock, motions do not reveal units.

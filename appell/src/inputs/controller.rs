@@ -19,8 +19,8 @@ use crate::inputs::closed_loop::{ClosedLoop, Onto, Outside};
 use crate::inputs::feedback::Feedback;
 use crate::inputs::law::{Law, Moment, Stage};
 use crate::inputs::switching::InputSwitches;
-use crate::inputs::tabulated::Table;
-use crate::motion::{Driven, Remarks};
+use crate::inputs::tabulated::{Remarks, Table};
+use crate::motion::Driven;
 use crate::setup::{Assignment, Setup, expression};
 use crate::{Error, Field};
 

@@ -16,10 +16,24 @@ use appell_spec::expr::Span;
 use appell_spec::mechanism::InputId;
 use appell_spec::{Code, shown};
 
-use crate::motion::Remarks;
 use crate::setup::{Setup, unknown};
 use crate::source::Source;
 use crate::{Error, Field, files, recording};
+
+/// Remarks on the inputs of a motion.
+#[derive(Debug, Clone, Default)]
+pub struct Remarks {
+    /// Whether neither inputs nor feedback drive the mechanism.
+    pub undriven: bool,
+    /// The time in s from which the last values of recorded inputs are held, if it comes before the end.
+    pub held_from: Option<f64>,
+    /// A remark on recorded inputs that are held by default.
+    pub smooth: Option<String>,
+    /// Coordinates in the first row of a recorded run whose inputs drive the motion, if it begins elsewhere.
+    pub begins: Option<String>,
+    /// What differs in that run from the other runs, and so from the model, a sentence for each parameter.
+    pub differs: Vec<String>,
+}
 
 /// Inputs of a file.
 pub struct Table {

@@ -7,7 +7,6 @@ mod destinations;
 mod diagnosed;
 mod engine;
 mod failure;
-mod flags;
 mod interrupt;
 mod motions;
 mod output;

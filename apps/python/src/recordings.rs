@@ -8,7 +8,7 @@ use appell::engine::Engine;
 use appell::gap_report::GapReport;
 use appell::identification::{Answer, Begin};
 use appell::recording::Frame;
-use appell::{Error, Source, identification};
+use appell::{Source, identification};
 use appell_report::identification as identified;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -182,21 +182,11 @@ impl DataSet {
         let set = Arc::clone(&self.0);
         let before = against.map(|before| Arc::clone(&before.0));
         watched(py, progress, move |watch| {
-            let mut library = Library::shipped()?;
-            for kind in &without {
-                library = library.without(kind)?;
-            }
-            let library = library.with(&effects)?;
+            let library = Library::of(&without, &effects)?;
             let options = Options {
                 pictures: true,
                 limits,
-                alternatives: alternatives
-                    .iter()
-                    .map(|model| {
-                        let source = Source::find(model)?;
-                        Ok(appell::recording::Spec::from(&source))
-                    })
-                    .collect::<Result<_, Error>>()?,
+                alternatives: appell::recording::specs(&alternatives)?,
                 horizon,
                 tolerance,
                 present: Vec::new(),

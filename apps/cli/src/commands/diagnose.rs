@@ -6,7 +6,7 @@ use std::str::FromStr;
 use appell::diagnosis::Library;
 use appell::fleet::{self, Fleet, Rig};
 use appell_gap::diagnose::{Limit, Options};
-use appell_recordings::{DataSet, Spec};
+use appell_recordings::DataSet;
 use serde_json::Value;
 
 use crate::diagnosed;
@@ -14,7 +14,6 @@ use crate::failure::Error;
 use crate::output::{self, shell};
 use crate::progress;
 use appell::files;
-use appell::source::Source;
 
 /// Default file name of the proposed experiment.
 const EXPERIMENT: &str = "experiment.csv";
@@ -125,12 +124,12 @@ impl Diagnose {
             [] => None,
             paths => Some(appell::recording::read(paths, self.model.as_deref())?),
         };
-        let library = self.library()?;
+        let library = Library::of(&self.without, &self.effects)?;
         let replaced = &library.warnings;
         let options = Options {
             pictures: self.html.is_some(),
             limits: self.limits(&set)?,
-            alternatives: self.alternatives()?,
+            alternatives: appell::recording::specs(&self.alternative)?,
             horizon: self.horizon()?,
             tolerance: self.tolerance,
             present: Vec::new(),
@@ -168,14 +167,6 @@ impl Diagnose {
         output::print_beside(&set.named(&text), &outputs)
     }
 
-    fn library(&self) -> Result<Library, Error> {
-        let mut library = Library::shipped()?;
-        for kind in &self.without {
-            library = library.without(kind)?;
-        }
-        Ok(library.with(&self.effects)?)
-    }
-
     /// Several rigs: a report for each, and one table.
     fn fleet(&self) -> Result<(), Error> {
         let given = [
@@ -197,7 +188,7 @@ impl Diagnose {
         }
         let folder = PathBuf::from(REPORTS);
         let processors = std::thread::available_parallelism().map_or(1, usize::from);
-        let library = self.library()?;
+        let library = Library::of(&self.without, &self.effects)?;
         let fleet = Fleet {
             folders: &self.data,
             model: self.model.as_deref(),
@@ -289,15 +280,6 @@ impl Diagnose {
             ))),
             horizon => Ok(horizon),
         }
-    }
-
-    /// The other specs.
-    fn alternatives(&self) -> Result<Vec<Spec>, Error> {
-        let specs = self
-            .alternative
-            .iter()
-            .map(|model| Ok(Spec::from(&Source::find(model)?)));
-        specs.collect()
     }
 
     /// The limits in SI.

@@ -72,7 +72,7 @@ enum Output {
     C,
     /// CUDA C++, one source: functions, and kernels for many places, one thread each
     Cuda,
-    /// Functions for NumPy, JAX, CasADi and SymPy alike
+    #[value(help = "Functions for NumPy, JAX, CasADi and SymPy alike")]
     Python,
     /// The spec with `[joints]` expanded into other sections
     Spec,

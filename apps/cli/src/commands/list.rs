@@ -51,7 +51,7 @@ impl List {
         for (path, format) in found {
             let robot = robot::read(&path, Some(folder), &Options::default());
             let file = path.strip_prefix(folder).unwrap_or(&path).display();
-            rows.push(row_of(file.to_string(), format, &robot));
+            rows.push(row_of(&file.to_string(), format, &robot));
             let file = path.to_string_lossy();
             entries.push(match &robot {
                 Ok(robot) => appell::json::robot(&file, robot),
@@ -92,7 +92,7 @@ impl List {
 }
 
 /// The row of a robot file.
-fn row_of(file: String, format: Format, robot: &Result<Imported, appell::Error>) -> Vec<String> {
+fn row_of(file: &str, format: Format, robot: &Result<Imported, appell::Error>) -> Vec<String> {
     let format = format.word();
     match robot {
         Ok(robot) => {

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use appell_codegen::mechanics::Regressor;
 use appell_gap::base;
 use appell_recordings::DataSet;
+use appell_report::row;
 use appell_report::text::{number, table};
 use serde_json::{Value, json};
 
@@ -71,31 +72,23 @@ impl BaseParameters {
         let parameters = structure.parameters.iter().zip(&structure.values);
         let parameters = parameters
             .map(|(own, value)| json!({ "name": own.name, "unit": own.unit, "value": value }));
-        let base = structure
-            .base
-            .iter()
-            .enumerate()
-            .map(|(place, combination)| {
-                let leading = &structure.parameters[combination.leading];
-                let others = combination.others.iter().map(|&(other, factor)| {
+        let mut estimates = self.fit.iter().flat_map(|fit| &fit.estimates);
+        let base = structure.base.iter().map(|combination| {
+            let leading = &structure.parameters[combination.leading];
+            let others = combination.others.iter().map(|&(other, factor)| {
                 json!({ "name": structure.parameters[other].name, "factor": factor })
             });
-                let mut value = json!({
-                    "name": leading.name, "unit": leading.unit, "text": structure.text(combination),
-                    "others": others.collect::<Vec<_>>(), "nominal": combination.nominal,
-                });
-                if let Some(fit) = &self.fit {
-                    let Estimate {
-                        value: found,
-                        std,
-                        interval95,
-                    } = &fit.estimates[place];
-                    value["value"] = json!(found);
-                    value["std"] = json!(std);
-                    value["interval95"] = json!(interval95);
-                }
-                value
+            let mut value = json!({
+                "name": leading.name, "unit": leading.unit, "text": structure.text(combination),
+                "others": others.collect::<Vec<_>>(), "nominal": combination.nominal,
             });
+            if let Some(found) = estimates.next() {
+                value["value"] = json!(found.value);
+                value["std"] = json!(found.std);
+                value["interval95"] = json!(found.interval95);
+            }
+            value
+        });
         let mut value = json!({
             "schema": "base/1",
             "mechanism": self.mechanism,
@@ -152,25 +145,17 @@ impl BaseParameters {
     }
 
     fn structure_table(&self) -> String {
-        let mut rows = vec![
-            ["parameter", "by the spec", "unit", "with"]
-                .map(str::to_owned)
-                .to_vec(),
-        ];
+        let mut rows = vec![row!["parameter", "by the spec", "unit", "with"]];
         for combination in &self.structure.base {
             let leading = &self.structure.parameters[combination.leading];
-            rows.push(vec![
-                leading.name.clone(),
-                number(combination.nominal),
-                leading.unit.clone(),
-                self.structure.others(combination),
-            ]);
+            let (nominal, others) = (combination.nominal, self.structure.others(combination));
+            rows.push(row![leading.name, number(nominal), leading.unit, others]);
         }
         table(&rows, 1..2)
     }
 
     fn fit_table(&self, fit: &Fit) -> String {
-        let heading = [
+        let mut rows = vec![row![
             "parameter",
             "by the spec",
             "found",
@@ -178,9 +163,8 @@ impl BaseParameters {
             "to",
             "unit",
             "",
-            "with",
-        ];
-        let mut rows = vec![heading.map(str::to_owned).to_vec()];
+            "with"
+        ]];
         for (combination, estimate) in self.structure.base.iter().zip(&fit.estimates) {
             let [low, high] = estimate.interval95;
             let remark = match combination.nominal {
@@ -189,36 +173,27 @@ impl BaseParameters {
                 _ => "",
             };
             let leading = &self.structure.parameters[combination.leading];
-            rows.push(vec![
-                leading.name.clone(),
-                number(combination.nominal),
-                number(estimate.value),
-                number(low),
-                number(high),
-                leading.unit.clone(),
-                remark.to_owned(),
-                self.structure.others(combination),
-            ]);
+            let numbers = [combination.nominal, estimate.value, low, high].map(number);
+            let others = self.structure.others(combination);
+            let mut row = row![leading.name];
+            row.extend(numbers);
+            row.extend(row![leading.unit, remark, others]);
+            rows.push(row);
         }
         table(&rows, 1..5)
     }
 }
 
 fn speed_table(speeds: &[Speed]) -> String {
-    let heading = [
+    let mut rows = vec![row![
         "along",
         "of the inputs",
         "left by the spec",
-        "left by the estimates",
-    ];
-    let mut rows = vec![heading.map(str::to_owned).to_vec()];
+        "left by the estimates"
+    ]];
     for speed in speeds {
-        rows.push(vec![
-            speed.name.clone(),
-            number(speed.inputs),
-            number(speed.nominal),
-            number(speed.left),
-        ]);
+        let [inputs, nominal, left] = [speed.inputs, speed.nominal, speed.left].map(number);
+        rows.push(row![speed.name, inputs, nominal, left]);
     }
     table(&rows, 1..4)
 }

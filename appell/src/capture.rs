@@ -89,7 +89,7 @@ impl Converted {
     }
 
     /// The summary as JSON.
-    pub(crate) fn to_json(&self) -> Value {
+    pub fn to_json(&self) -> Value {
         let skeleton = &self.skeleton;
         json!({
             "schema": "motion/1", "mechanism": skeleton.mechanism, "runs": self.runs,

@@ -119,7 +119,7 @@ impl Checked {
     }
 
     /// The summary and the warnings as JSON.
-    pub(crate) fn to_json(&self) -> Value {
+    pub fn to_json(&self) -> Value {
         let Derived { mechanism, .. } = &self.derived;
         let speeds = self.speeds();
         json!({

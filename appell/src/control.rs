@@ -2,7 +2,6 @@
 
 pub mod attraction;
 pub mod design;
-pub mod errors;
 pub(crate) mod law_file;
 pub(crate) mod parse;
 pub mod remedies;
@@ -15,7 +14,6 @@ pub use appell_analysis::control::operating_point::MotionEquations;
 pub use appell_analysis::control::reduction::Subsystem;
 pub use appell_analysis::control::sampled::Sampling;
 pub use design::Design;
-pub use errors::DesignError;
 pub use nalgebra::{Complex, DMatrix};
 pub use request::Request;
 pub use schedule::Schedule;

@@ -1,4 +1,4 @@
-//! A robot file corrected by a hypothesis of a gap report.
+//! A spec or a robot file corrected by a hypothesis of a gap report.
 
 mod wanted;
 
@@ -13,16 +13,15 @@ use crate::{Error, robot};
 
 use wanted::{Part, Wanted};
 
-/// A robot file with the changes of a hypothesis.
+/// A spec or a robot file with the changes of a hypothesis.
 pub struct Correction {
     /// The text of the file.
     pub text: String,
-    /// The changes, a sentence for each element.
-    pub edits: Vec<String>,
-    /// What the format cannot express, with what to do instead.
-    pub remarks: Vec<String>,
-    /// Hypotheses that the recordings cannot distinguish from this one.
-    pub rivals: Vec<String>,
+    /// What it is, in words.
+    pub(crate) about: String,
+    /// The changes and what the file cannot express, a line each.
+    pub lines: String,
+    pub(crate) edits: Value,
 }
 
 /// Why a file stays as it is.
@@ -47,12 +46,12 @@ pub fn correct(
         return Err(Error::data(path.to_string_lossy(), message));
     }
     let Some(hypothesis) = &hypothesis else {
-        return Ok(Correction {
-            text: text.to_owned(),
+        let text = text.to_owned();
+        let stays = Corrected {
+            text,
             edits: Vec::new(),
-            remarks: vec![NO_GAP.to_owned()],
-            rivals: Vec::new(),
-        });
+        };
+        return Ok(Correction::of(path, stays, &[NO_GAP.to_owned()], &[]));
     };
     let (parts, mut remarks) = Wanted::of(path, text, hypothesis, &report.locked)?;
     let whole = |parts: &[Part], remarks: &[String]| {
@@ -79,14 +78,8 @@ pub fn correct(
             whole(&possible, &remarks)?
         }
     };
-    let Corrected { text, edits } = corrected;
-    let rivals = report.rivals(hypothesis).into_iter();
-    Ok(Correction {
-        text,
-        edits,
-        remarks,
-        rivals: rivals.map(str::to_owned).collect(),
-    })
+    let rivals = report.rivals(hypothesis);
+    Ok(Correction::of(path, corrected, &remarks, &rivals))
 }
 
 /// The first sentence of an error.
@@ -99,27 +92,38 @@ fn reason(error: &Error) -> String {
 }
 
 impl Correction {
-    /// What was changed, and what the format cannot express, as JSON.
-    pub fn json(&self) -> Value {
-        json!({ "edits": self.edits, "remarks": self.remarks, "tied_with": self.rivals })
+    /// Of a robot file.
+    fn of(path: &Path, corrected: Corrected, remarks: &[String], rivals: &[&str]) -> Self {
+        let Corrected { text, edits } = corrected;
+        let mut lines = String::new();
+        // Writing to a string cannot fail.
+        for line in &edits {
+            let _ = writeln!(lines, "  changed   {line}");
+        }
+        for line in remarks {
+            let _ = writeln!(lines, "  {line}");
+        }
+        Self {
+            text,
+            about: format!("{} corrected", path.display()),
+            lines: lines + &tied(rivals),
+            edits: json!({ "edits": edits, "remarks": remarks, "tied_with": rivals }),
+        }
     }
 
-    /// What was changed, and what the format cannot express, a line each.
-    pub fn summary(&self) -> String {
-        let mut summary = String::new();
-        // Writing to a string cannot fail.
-        for line in &self.edits {
-            let _ = writeln!(summary, "  changed   {line}");
-        }
-        for line in &self.remarks {
-            let _ = writeln!(summary, "  {line}");
-        }
-        for rival in &self.rivals {
-            let _ = writeln!(
-                summary,
-                "  tied with {rival}: these recordings cannot distinguish them"
-            );
-        }
-        summary
+    /// The changes, and what the file cannot express, as JSON.
+    pub fn json(&self) -> Value {
+        self.edits.clone()
     }
+
+    /// What was written to `file`, and what belongs elsewhere.
+    pub fn summary(&self, file: &str) -> String {
+        format!("{file}: {}\n{}", self.about, self.lines)
+    }
+}
+
+/// A line for each hypothesis that the recordings cannot distinguish from the one that is applied.
+pub(crate) fn tied(rivals: &[&str]) -> String {
+    let line = |rival| format!("  tied with {rival}: these recordings cannot distinguish them\n");
+    rivals.iter().map(line).collect()
 }

@@ -36,7 +36,7 @@ fn changed_lines(set: &DataSet, report: &Report) -> Result<String, Error> {
         (&robot.file, text, better.text)
     } else {
         let source = recording::source(set);
-        let better = source.improved(&report, None, &source.file)?.spec;
+        let better = source.improved(&report, None, &source.file)?.text;
         (&set.spec.file, source.text, better)
     };
     Ok(unified(file, file, &before, &after))
@@ -53,58 +53,42 @@ pub struct Library {
 impl Library {
     /// The shipped effects.
     pub fn shipped() -> Result<Self, Error> {
-        Ok(Self {
-            effects: effects::shipped()?,
-            warnings: Vec::new(),
-        })
+        Self::of(&[], &[])
     }
 
-    /// Removes a kind of effect.
-    pub fn without(mut self, kind: &str) -> Result<Self, Error> {
-        let before = self.effects.len();
-        self.effects.retain(|effect| effect.name != kind);
-        if self.effects.len() < before {
-            return Ok(self);
+    /// The shipped effects without some kinds, and with a user's own. An effect with the name of a shipped one replaces it.
+    pub fn of(without: &[String], paths: &[PathBuf]) -> Result<Self, Error> {
+        let mut effects = effects::shipped()?;
+        for kind in without {
+            let before = effects.len();
+            effects.retain(|effect| effect.name != *kind);
+            if effects.len() == before {
+                let mut kinds: Vec<&str> = effects.iter().map(|e| e.name.as_str()).collect();
+                kinds.dedup();
+                let kinds = kinds.join(", ");
+                let message = format!("there is no effect `{kind}`; the library has {kinds}");
+                return Err(Error::request(Field::Effects, message));
+            }
         }
-        let mut kinds: Vec<&str> = self.effects.iter().map(|e| e.name.as_str()).collect();
-        kinds.dedup();
-        let message = format!(
-            "there is no effect `{kind}`; the library has {}",
-            kinds.join(", ")
-        );
-        Err(Error::request(Field::Effects, message))
-    }
-
-    /// Adds a user's own effects. An effect with the name of a shipped one replaces it.
-    pub fn with(mut self, paths: &[PathBuf]) -> Result<Self, Error> {
-        let mut own = Vec::new();
+        let (mut own, mut warnings) = (Vec::<Effect>::new(), Vec::new());
         for path in paths {
             let text = files::read(path, appell_spec::limits::MAX_FILE as u64)?;
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             let file = path.to_string_lossy();
             let effect = Effect::read(&name, &file, &text)?;
-            if self
-                .effects
-                .iter()
-                .any(|shipped| shipped.name == effect.name)
-            {
-                self.warnings.push(format!(
-                    "{file}: effect `{}` replaces the shipped one",
-                    effect.name
-                ));
+            let name = &effect.name;
+            if effects.iter().any(|shipped| shipped.name == *name) {
+                warnings.push(format!("{file}: effect `{name}` replaces the shipped one"));
             }
-            if own.iter().any(|other: &Effect| other.name == effect.name) {
-                let message = format!("{file}: the effect `{}` is given twice", effect.name);
+            if own.iter().any(|other| other.name == *name) {
+                let message = format!("{file}: the effect `{name}` is given twice");
                 return Err(Error::request(Field::Effects, message));
             }
             own.push(effect);
         }
-        self.effects.retain(|shipped| {
-            own.iter()
-                .all(|effect: &Effect| effect.name != shipped.name)
-        });
-        self.effects.append(&mut own);
-        Ok(self)
+        effects.retain(|shipped| own.iter().all(|effect| effect.name != shipped.name));
+        effects.append(&mut own);
+        Ok(Self { effects, warnings })
     }
 
     /// All that its effects say.
@@ -113,31 +97,22 @@ impl Library {
         texts.collect::<Vec<_>>().join("\n")
     }
 
-    /// Diagnoses a data set; `stage` is called with the name of each step.
+    /// Diagnoses a data set, or judges it against recordings of the same rig before; `stage` is called with the name of each
+    /// step.
     pub fn diagnose(
         &self,
+        before: Option<&DataSet>,
         set: &DataSet,
         options: &Options,
         stage: impl FnMut(&'static str),
     ) -> Result<Report, Error> {
-        recording::check(set)?;
-        Ok(diagnose::diagnose(set, &self.effects, options, stage)?)
-    }
-}
-
-impl Library {
-    /// Judges recordings against those of the same rig before; `stage` is called with the name of each step.
-    pub fn against(
-        &self,
-        before: &DataSet,
-        now: &DataSet,
-        options: &Options,
-        stage: impl FnMut(&'static str),
-    ) -> Result<Report, Error> {
-        recording::check(before)?;
-        recording::check(now)?;
         let effects = &self.effects;
-        Ok(diagnose::against(before, now, effects, options, stage)?)
+        before.map_or(Ok(()), recording::check)?;
+        recording::check(set)?;
+        Ok(match before {
+            Some(before) => diagnose::against(before, set, effects, options, stage)?,
+            None => diagnose::diagnose(set, effects, options, stage)?,
+        })
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use appell_gap::effects::{Candidate, Scales, candidates, shipped, written};
 use appell_models::ALL;
 use appell_recordings::Spec;
+use appell_report::row;
 use appell_report::text::table;
 use serde_json::{Value, json};
 
@@ -51,23 +52,15 @@ pub fn named(name: &str) -> Result<Vec<Effect>, Error> {
 
 /// The library as a table.
 pub fn overview(effects: &[Effect]) -> String {
-    let heading = ["effect", "family", "sites", "law"].map(str::to_owned);
-    let rows = effects.iter().map(|effect| {
+    let mut rows = vec![row!["effect", "family", "sites", "law"]];
+    for effect in effects {
         let law = effect.law();
         let first = law
             .split_once(". ")
             .map_or(law.as_str(), |(first, _)| first);
-        [
-            effect.name.clone(),
-            effect.family.word().to_owned(),
-            effect.site.word.replace('_', " "),
-            first.trim_end_matches('.').to_owned(),
-        ]
-    });
-    let rows: Vec<Vec<String>> = std::iter::once(heading)
-        .chain(rows)
-        .map(|row| row.to_vec())
-        .collect();
+        let (family, site) = (effect.family.word(), effect.site.word.replace('_', " "));
+        rows.push(row![effect.name, family, site, first.trim_end_matches('.')]);
+    }
     table(&rows, 0..0)
 }
 

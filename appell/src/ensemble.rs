@@ -62,7 +62,6 @@ use crate::{Error, Field, files};
 use cases::{Cases, Task};
 use factors::Table;
 use reading::Reading;
-use variant::Common;
 
 /// A compiled study.
 pub struct Ensemble {
@@ -158,14 +157,13 @@ impl Ensemble {
         let study = Study::parse(file, text)?;
         let mut reading = Reading::new(&study);
         let table = Table::read(&mut reading, folder)?;
-        let own = own(&study);
         let mut digest = Digest::default();
         let mut models = Vec::new();
         for name in chosen(&study, MODEL).iter().chain(&study.model) {
             let source = source(&mut reading, name, folder)?;
             let Some(source) = source else { continue };
             digest.add(source.text.as_bytes());
-            models.extend(spec::extended(&mut reading, &source, &own)?);
+            models.extend(spec::extended(&mut reading, &source)?);
         }
         reading.check()?;
         let Some(first) = models.first() else {
@@ -213,24 +211,17 @@ impl Ensemble {
             reading.check()?;
         }
         let mut variants = Vec::new();
+        let choices_of_law = match &laws[..] {
+            [] => vec![None],
+            laws => laws.iter().map(Some).collect(),
+        };
         for extended in &models {
             let (setup, _) = variant::nominal(&mut reading, &extended.model)?;
             let targets = factors::targets(&mut reading, &setup, &table);
             drop(setup);
-            let common = Common {
-                folder,
-                targets: &targets,
-            };
-            if laws.is_empty() {
-                variants.extend(variant::variant(&mut reading, extended, None, &common)?);
-            }
-            for law in &laws {
-                variants.extend(variant::variant(
-                    &mut reading,
-                    extended,
-                    Some(law),
-                    &common,
-                )?);
+            for &law in &choices_of_law {
+                let variant = variant::variant(&mut reading, extended, law, folder, &targets)?;
+                variants.extend(variant);
             }
             reading.check()?;
         }
@@ -478,17 +469,6 @@ impl Engine for Ensemble {
         }
         self.cases.run(cases, watch, rows);
     }
-}
-
-/// Quantities defined by the study: those with a unit.
-fn own(study: &Study) -> Vec<spec::Own<'_>> {
-    let varied = study.vary.iter().map(|v| (&v.name, v.unit.as_ref()));
-    let noises = study.noise.iter().map(|n| (&n.name, n.unit.as_ref()));
-    let own = varied.chain(noises).filter_map(|(name, unit)| {
-        let unit = unit?;
-        Some(spec::Own { name, unit })
-    });
-    own.collect()
 }
 
 /// The files among which an entry of `[vary]` chooses.

@@ -15,7 +15,6 @@ use appell_runtime::signal::SignalError;
 use appell_runtime::simulate::SimulationError;
 use appell_spec::{Diagnostic, Report, visible};
 
-use crate::control::DesignError;
 use crate::field::Field;
 use crate::fmu::FmuError;
 
@@ -56,41 +55,6 @@ pub enum Error {
         #[source]
         cause: std::io::Error,
     },
-    /// A file is not one that is read.
-    #[error(transparent)]
-    Unreadable(FileError),
-    /// Recordings cannot be used.
-    #[error("{}", visible(&.0.to_string()))]
-    Recording(#[source] DataError),
-    /// A table of inputs is not a function of time.
-    #[error("{}: {source}", visible(file))]
-    Table {
-        /// The file.
-        file: String,
-        /// The reason.
-        source: SignalError,
-    },
-    /// A signal of the spec is not a function of time.
-    #[error(transparent)]
-    Signal(#[from] SignalError),
-    /// No motion can be computed.
-    #[error(transparent)]
-    Simulate(#[from] SimulationError),
-    /// No steady motion satisfies the conditions, or they are inconsistent.
-    #[error(transparent)]
-    Steady(#[from] SteadyError),
-    /// Steady motions cannot be continued.
-    #[error(transparent)]
-    Branch(BranchError),
-    /// The stability of a motion cannot be determined.
-    #[error(transparent)]
-    Stability(#[from] StabilityError),
-    /// No stability chart can be computed.
-    #[error(transparent)]
-    Chart(ChartError),
-    /// No controller can be designed.
-    #[error(transparent)]
-    Design(Box<DesignError>),
     /// A failure at one value of a schedule.
     #[error("at {}: {source}", visible(place))]
     At {
@@ -99,31 +63,25 @@ pub enum Error {
         /// The failure.
         source: Box<Error>,
     },
-    /// No parameters can be estimated.
-    #[error("{}{}", .0, advice(.0))]
-    Identify(#[from] IdentifyError),
-    /// A gap cannot be diagnosed.
-    #[error(transparent)]
-    Diagnose(DiagnoseError),
-    /// Recorded motions do not determine inputs or parameters.
-    #[error(transparent)]
-    Inverse(#[from] RelationError),
-    /// Base parameters cannot be found.
-    #[error(transparent)]
-    Base(#[from] BaseError),
-    /// No FMU can be made.
-    #[error(transparent)]
-    Fmu(Box<FmuError>),
-    /// A result cannot be written as JSON.
-    #[error("the result is not JSON: {0}")]
-    Json(#[from] serde_json::Error),
-    /// Another computation failed.
-    #[error("{}", visible(&.0.to_string()))]
-    Computation(#[source] Box<dyn std::error::Error + Send + Sync>),
+    /// A computation failed, or a lower crate refuses the request or the data.
+    #[error("{}", visible(&cause.to_string()))]
+    Failed {
+        /// Whose fault it is.
+        class: Class,
+        /// The invalid part of the request, where known.
+        field: Option<Field>,
+        /// The part of the request that may remedy the failure.
+        remedy: Option<Field>,
+        /// Why; see [`Error::cause`].
+        #[source]
+        cause: Cause,
+    },
     /// Several failures.
     #[error("{}", plain(.0))]
     Several(Vec<Error>),
 }
+
+type Cause = Box<dyn std::error::Error + Send + Sync>;
 
 /// Class of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -179,8 +137,25 @@ impl Error {
     }
 
     /// A computation that failed.
-    pub fn computation(source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
-        Self::Computation(source.into())
+    pub fn computation(cause: impl Into<Cause>) -> Self {
+        Self::failed(Class::Computation, None, cause)
+    }
+
+    fn failed(class: Class, field: Option<Field>, cause: impl Into<Cause>) -> Self {
+        Self::Failed {
+            class,
+            field,
+            remedy: None,
+            cause: cause.into(),
+        }
+    }
+
+    /// The error of a lower crate that caused it, if it is one of this type.
+    pub fn cause<E: std::error::Error + 'static>(&self) -> Option<&E> {
+        match self {
+            Self::Failed { cause, .. } => cause.downcast_ref(),
+            _ => None,
+        }
     }
 
     /// A file that cannot be read.
@@ -220,38 +195,10 @@ impl Error {
     /// The class; of several failures, the gravest.
     pub fn class(&self) -> Class {
         match self {
-            Self::Report(_)
-            | Self::Signal(_)
-            | Self::Simulate(SimulationError::Signal(_))
-            | Self::Data { .. }
-            | Self::File { .. }
-            | Self::Unreadable(_)
-            | Self::Recording(_)
-            | Self::Table { .. } => Class::Data,
-            Self::Simulate(SimulationError::Undetermined { .. }) => Class::Computation,
-            Self::Request { .. }
-            | Self::Expression(_)
-            | Self::Simulate(_)
-            | Self::Chart(ChartError::Grid(..)) => Class::Request,
-            Self::Branch(error) | Self::Chart(ChartError::Branch(error)) => of_branch(error),
-            Self::Stability(_)
-            | Self::Chart(_)
-            | Self::Fmu(_)
-            | Self::Json(_)
-            | Self::Computation(_) => Class::Computation,
-            Self::Steady(error) => of_steady(error),
-            Self::Design(error) => error.class(),
+            Self::Report(_) | Self::Data { .. } | Self::File { .. } => Class::Data,
+            Self::Request { .. } | Self::Expression(_) => Class::Request,
+            Self::Failed { class, .. } => *class,
             Self::At { source, .. } => source.class(),
-            Self::Identify(error) => of_identification(error),
-            Self::Diagnose(error) => of_diagnosis(error),
-            Self::Inverse(error) => match error {
-                RelationError::Inverse(_) => Class::Computation,
-                _ => Class::Request,
-            },
-            Self::Base(error) => match error {
-                BaseError::NoInput { .. } | BaseError::Differs { .. } => Class::Data,
-                _ => Class::Computation,
-            },
             Self::Several(all) => all.iter().map(Self::class).max().unwrap_or(Class::Request),
         }
     }
@@ -261,16 +208,7 @@ impl Error {
         match self {
             Self::Request { field, .. } => Some(*field),
             Self::Expression(error) => Some(error.field),
-            Self::Design(error) => error.field,
-            Self::Chart(ChartError::Grid(..)) => Some(Field::Grid),
-            Self::Branch(BranchError::Isolated { .. } | BranchError::Range { .. }) => {
-                Some(Field::Along)
-            }
-            Self::Identify(IdentifyError::UnknownParameter { .. })
-            | Self::Inverse(RelationError::UnknownParameter { .. }) => Some(Field::Free),
-            Self::Identify(IdentifyError::UnknownAddition { .. }) => Some(Field::Also),
-            Self::Identify(IdentifyError::Rate { .. }) => Some(Field::Drifting),
-            Self::Inverse(RelationError::UnknownColumn { .. }) => Some(Field::Bias),
+            Self::Failed { field, .. } => *field,
             Self::At { source, .. } => source.field(),
             _ => None,
         }
@@ -279,61 +217,23 @@ impl Error {
     /// The part of the request that may remedy the failure.
     pub fn remedy(&self) -> Option<Field> {
         match self {
-            Self::Identify(IdentifyError::NothingFree) => Some(Field::Free),
-            Self::Fmu(error) if error.is_about_machine_code() => Some(Field::Sources),
+            Self::Failed { remedy, .. } => *remedy,
             Self::At { source, .. } => source.remedy(),
             _ => None,
         }
     }
-}
 
-fn of_steady(error: &SteadyError) -> Class {
-    match error {
-        SteadyError::None { .. } | SteadyError::OutOfRange { .. } | SteadyError::Structure(_) => {
-            Class::Computation
+    fn with_remedy(mut self, of: Option<Field>) -> Self {
+        if let Self::Failed { remedy, .. } = &mut self {
+            *remedy = of;
         }
-        _ => Class::Request,
+        self
     }
 }
 
-fn of_branch(error: &BranchError) -> Class {
-    match error {
-        BranchError::Steady(error) => of_steady(error),
-        BranchError::Isolated { .. } | BranchError::Range { .. } => Class::Request,
-        BranchError::Stability(_) => Class::Computation,
-    }
-}
-
-fn of_identification(error: &IdentifyError) -> Class {
-    match error {
-        IdentifyError::UnknownParameter { .. }
-        | IdentifyError::UnknownAddition { .. }
-        | IdentifyError::Rate { .. } => Class::Request,
-        IdentifyError::Estimate(_) => Class::Computation,
-        _ => Class::Data,
-    }
-}
-
-fn of_diagnosis(error: &DiagnoseError) -> Class {
-    match error {
-        DiagnoseError::NothingMeasured
-        | DiagnoseError::LacksChannel { .. }
-        | DiagnoseError::NothingToFit
-        | DiagnoseError::Model(ModelError::Edit(_)) => Class::Data,
-        _ => Class::Computation,
-    }
-}
-
-/// Hint for a failed estimation.
-fn advice(error: &IdentifyError) -> &'static str {
-    match error {
-        IdentifyError::Estimate(EstimateError::Diverged { .. } | EstimateError::Stuck { .. }) => {
-            "; neither the parameters of the rig nor multiple shooting led to an optimum: state parameters nearer to the \
-             truth, or estimate fewer"
-        }
-        _ => "",
-    }
-}
+/// Hint for an estimation without an optimum.
+const ADVICE: &str = "; neither the parameters of the rig nor multiple shooting led to an optimum: state parameters nearer \
+    to the truth, or estimate fewer";
 
 fn plain(failures: &[Error]) -> String {
     let texts = failures.iter().map(ToString::to_string);
@@ -346,73 +246,109 @@ impl From<Report> for Error {
     }
 }
 
-impl From<FileError> for Error {
-    fn from(error: FileError) -> Self {
-        match error {
-            FileError::System { path, cause } => Self::reading(&path)(cause),
-            other => Self::Unreadable(other),
+/// Errors of lower crates, each with its class and, where known, the invalid part of the request.
+macro_rules! failures {
+    ($($cause:ty, |$error:ident| $judged:expr;)*) => {$(
+        impl From<$cause> for Error {
+            fn from($error: $cause) -> Self {
+                let (class, field) = $judged;
+                Self::failed(class, field, $error)
+            }
         }
-    }
+    )*};
 }
 
-impl From<DesignError> for Error {
-    fn from(error: DesignError) -> Self {
-        Self::Design(Box::new(error))
+failures! {
+    SignalError, |error| (Class::Data, None);
+    SimulationError, |error| match error {
+        SimulationError::Signal(_) => (Class::Data, None),
+        SimulationError::Undetermined { .. } => (Class::Computation, None),
+        _ => (Class::Request, None),
+    };
+    SteadyError, |error| match error {
+        SteadyError::None { .. } | SteadyError::OutOfRange { .. } | SteadyError::Structure(_) => {
+            (Class::Computation, None)
+        }
+        _ => (Class::Request, None),
+    };
+    StabilityError, |error| (Class::Computation, None);
+    BranchError, |error| match error {
+        BranchError::Steady(error) => return error.into(),
+        BranchError::Stability(error) => return error.into(),
+        BranchError::Isolated { .. } | BranchError::Range { .. } => {
+            (Class::Request, Some(Field::Along))
+        }
+    };
+    ChartError, |error| match error {
+        ChartError::Branch(error) => return error.into(),
+        ChartError::Grid(..) => (Class::Request, Some(Field::Grid)),
+        _ => (Class::Computation, None),
+    };
+    RelationError, |error| match error {
+        RelationError::Inverse(_) => (Class::Computation, None),
+        RelationError::UnknownParameter { .. } => (Class::Request, Some(Field::Free)),
+        RelationError::UnknownColumn { .. } => (Class::Request, Some(Field::Bias)),
+    };
+    BaseError, |error| match error {
+        BaseError::NoInput { .. } | BaseError::Differs { .. } => (Class::Data, None),
+        _ => (Class::Computation, None),
+    };
+    FileError, |error| match error {
+        FileError::System { path, cause } => return Self::reading(&path)(cause),
+        _ => (Class::Data, None),
+    };
+    DataError, |error| match error {
+        DataError::Report(report) => return Self::Report(report),
+        DataError::File(error) => return error.into(),
+        DataError::Several(all) => return Self::Several(all.into_iter().map(Self::from).collect()),
+        _ => (Class::Data, None),
+    };
+    DiagnoseError, |error| match error {
+        DiagnoseError::Model(
+            ModelError::Spec(report) | ModelError::Effect(EffectError(report)),
+        ) => return Self::Report(report),
+        DiagnoseError::Data(error) => return error.into(),
+        DiagnoseError::NothingMeasured
+        | DiagnoseError::LacksChannel { .. }
+        | DiagnoseError::NothingToFit
+        | DiagnoseError::Model(ModelError::Edit(_)) => (Class::Data, None),
+        _ => (Class::Computation, None),
+    };
+}
+
+impl From<IdentifyError> for Error {
+    fn from(error: IdentifyError) -> Self {
+        let (class, field) = match &error {
+            IdentifyError::UnknownParameter { .. } => (Class::Request, Some(Field::Free)),
+            IdentifyError::UnknownAddition { .. } => (Class::Request, Some(Field::Also)),
+            IdentifyError::Rate { .. } => (Class::Request, Some(Field::Drifting)),
+            IdentifyError::Estimate(
+                EstimateError::Diverged { .. } | EstimateError::Stuck { .. },
+            ) => return Self::computation(format!("{error}{ADVICE}")),
+            IdentifyError::Estimate(_) => (Class::Computation, None),
+            _ => (Class::Data, None),
+        };
+        let is_idle = matches!(error, IdentifyError::NothingFree);
+        Self::failed(class, field, error).with_remedy(is_idle.then_some(Field::Free))
     }
 }
 
 impl From<FmuError> for Error {
     fn from(error: FmuError) -> Self {
-        Self::Fmu(Box::new(error))
+        // Sources alone are possible all the same.
+        let needs_code = !matches!(error, FmuError::Package(_));
+        Self::computation(error).with_remedy(needs_code.then_some(Field::Sources))
     }
 }
 
-impl From<BranchError> for Error {
-    fn from(error: BranchError) -> Self {
-        match error {
-            BranchError::Steady(error) => Self::Steady(error),
-            BranchError::Stability(error) => Self::Stability(error),
-            other => Self::Branch(other),
-        }
-    }
-}
-
-impl From<ChartError> for Error {
-    fn from(error: ChartError) -> Self {
-        match error {
-            ChartError::Branch(error) => error.into(),
-            other => Self::Chart(other),
-        }
+impl From<serde_json::Error> for Error {
+    fn from(error: serde_json::Error) -> Self {
+        Self::computation(format!("the result is not JSON: {error}"))
     }
 }
 
 impl From<EffectError> for Error {
     fn from(EffectError(report): EffectError) -> Self {
         Self::Report(report)
-    }
-}
-
-impl From<DataError> for Error {
-    fn from(error: DataError) -> Self {
-        match error {
-            DataError::Report(report) => Self::Report(report),
-            DataError::File(error) => error.into(),
-            DataError::Several(errors) => {
-                Self::Several(errors.into_iter().map(Self::from).collect())
-            }
-            whole => Self::Recording(whole),
-        }
-    }
-}
-
-impl From<DiagnoseError> for Error {
-    fn from(error: DiagnoseError) -> Self {
-        match error {
-            DiagnoseError::Model(
-                ModelError::Spec(report) | ModelError::Effect(EffectError(report)),
-            ) => Self::Report(report),
-            DiagnoseError::Data(error) => error.into(),
-            other => Self::Diagnose(other),
-        }
     }
 }

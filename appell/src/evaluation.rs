@@ -5,31 +5,79 @@ use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use appell_codegen::program::FunctionKind;
-pub use appell_runtime::condition::Conditions;
-pub use appell_runtime::contact::ContactForce;
+use appell_runtime::condition::Conditions;
 use appell_runtime::contact::ContactForces;
 use appell_runtime::inputs::{ModelInputs, ZeroInputs};
-pub use appell_runtime::model::Energies;
 use appell_runtime::model::{At, Model as Equations, ModelInfo};
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 use serde_json::{Map, Value, json};
 
 use crate::cases::Case;
-use crate::json::{named, names};
+use crate::json::{named, names, object};
 use crate::{Error, Model};
 
-/// The quantities of the equations, by their keys in JSON, with the functions that give them.
-const QUANTITIES: [(&[&str], &[FunctionKind]); 11] = {
+/// Quantities of the equations that are evaluated together.
+struct Group {
+    /// Their keys in JSON.
+    keys: &'static [&'static str],
+    /// The functions that give them.
+    functions: &'static [FunctionKind],
+    /// Their values in SI, matrices as lists of rows; none for a place without what they need.
+    values: fn(&Place<'_>) -> Vec<Value>,
+}
+
+const fn group(
+    keys: &'static [&'static str],
+    functions: &'static [FunctionKind],
+    values: fn(&Place<'_>) -> Vec<Value>,
+) -> Group {
+    Group {
+        keys,
+        functions,
+        values,
+    }
+}
+
+/// A place at which the equations are evaluated.
+struct Place<'a> {
+    model: &'a dyn Equations,
+    info: &'a ModelInfo,
+    at: At<'a>,
+    /// Pseudo-accelerations, where there are some.
+    accelerations: Option<&'a [f64]>,
+}
+
+/// All quantities, in the order of the answer.
+const QUANTITIES: [Group; 11] = {
     use FunctionKind as F;
     [
-        (&["rates"], &[F::Rates]),
-        (
+        group(&["rates"], &[F::Rates], |of| {
+            let rates = filled(of.info.state_len(), |rates| of.model.rates(of.at, rates));
+            vec![named(&of.info.states, &rates)]
+        }),
+        group(
             &["mass_matrix", "bias", "generalized_forces"],
             &[F::MassMatrixAndBias, F::GeneralizedForces],
+            |of| {
+                let s = of.info.speeds;
+                let (mut mass, mut bias, mut forces) =
+                    (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
+                of.model.appell(of.at, &mut mass, &mut bias, &mut forces);
+                vec![rows(&mass, [s, s]), json!(bias), json!(forces)]
+            },
         ),
-        (&["A", "B"], &[F::Jacobians]),
-        (&["P"], &[F::ParameterJacobian]),
-        (
+        group(&["A", "B"], &[F::Jacobians], |of| {
+            let (n, m) = (of.info.state_len(), of.info.input_len());
+            let (mut a, mut b) = (vec![0.0; n * n], vec![0.0; n * m]);
+            of.model.jacobians(of.at, &mut vec![0.0; n], &mut a, &mut b);
+            vec![rows(&a, [n, n]), rows(&b, [n, m])]
+        }),
+        group(&["P"], &[F::ParameterJacobian], |of| {
+            let (n, k) = (of.info.state_len(), of.info.parameter_len());
+            let p = filled(n * k, |p| of.model.parameter_jacobian(of.at, p));
+            vec![rows(&p, [n, k])]
+        }),
+        group(
             &[
                 "acceleration_energy",
                 "kinetic_energy",
@@ -37,53 +85,67 @@ const QUANTITIES: [(&[&str], &[FunctionKind]); 11] = {
                 "power",
             ],
             &[F::AccelerationEnergy, F::Energies],
+            |of| {
+                let all = of.model.energies(of.at);
+                [all.acceleration, all.kinetic, all.potential, all.power]
+                    .map(Value::from)
+                    .to_vec()
+            },
         ),
-        (&["constraint_residual"], &[F::ConstraintResidual]),
-        (&["constraint_forces"], &[F::ConstraintForces]),
-        (&["contacts"], &[F::ConstraintForces, F::Contacts]),
-        (&["conditions"], &[F::MassMatrixAndBias, F::Systems]),
-        (&["outputs"], &[F::Outputs]),
-        (&["inverse_dynamics"], &[F::InverseDynamics]),
+        group(&["constraint_residual"], &[F::ConstraintResidual], |of| {
+            let count = of.info.constraint_rows.len();
+            let residual = filled(count, |rows| of.model.constraint_residual(of.at, rows));
+            vec![json!(residual)]
+        }),
+        group(&["constraint_forces"], &[F::ConstraintForces], |of| {
+            let reactions = &of.info.reactions;
+            let forces = filled(3 * reactions.len(), |forces| {
+                of.model.constraint_forces(of.at, forces);
+            });
+            let all = reactions.iter().zip(forces.chunks(3));
+            vec![object(all.map(|(one, force)| (&one.name, json!(force))))]
+        }),
+        group(&["contacts"], &[F::ConstraintForces, F::Contacts], |of| {
+            vec![contacts(of)]
+        }),
+        group(&["conditions"], &[F::MassMatrixAndBias, F::Systems], |of| {
+            let found = Conditions::of(of.model, of.at);
+            vec![json!({
+                "mass_matrix": found.mass_matrix,
+                "velocities": found.velocities,
+                "systems": found.systems,
+            })]
+        }),
+        group(&["outputs"], &[F::Outputs], |of| {
+            let outputs = filled(of.info.output_len(), |y| of.model.outputs(of.at, y));
+            vec![named(&of.info.outputs, &outputs)]
+        }),
+        group(&["inverse_dynamics"], &[F::InverseDynamics], |of| {
+            let demand = of.accelerations.map(|given| {
+                filled(of.info.speeds, |demand| {
+                    of.model.inverse_dynamics(of.at, given, demand);
+                })
+            });
+            demand.into_iter().map(Value::from).collect()
+        }),
     ]
 };
 
+/// Quantities that may be infinite at a regular place: friction demands, condition numbers.
+const UNBOUNDED: [&str; 2] = ["contacts", "conditions"];
+
 /// The keys of all quantities.
 pub fn quantities() -> impl Iterator<Item = &'static str> + Clone {
-    QUANTITIES.iter().flat_map(|(keys, _)| keys.iter().copied())
+    QUANTITIES.iter().flat_map(|group| group.keys).copied()
 }
 
-/// Quantities of the equations at one state, in SI; matrices are stored by rows. Those that were not asked for are empty
-/// or zero.
+/// Quantities at one state.
 #[derive(Debug, Clone)]
 pub struct Values {
-    /// Rates of the states.
-    pub rates: Vec<f64>,
-    /// ∂ẋ/∂x.
-    pub a: Vec<f64>,
-    /// ∂ẋ/∂u.
-    pub b: Vec<f64>,
-    /// ∂ẋ/∂p.
-    pub p: Vec<f64>,
-    /// Mass matrix M.
-    pub mass_matrix: Vec<f64>,
-    /// Bias b.
-    pub bias: Vec<f64>,
-    /// Pseudo-forces Π.
-    pub forces: Vec<f64>,
-    /// Energies and power.
-    pub energies: Energies,
-    /// Residuals of the constraint rows.
-    pub residual: Vec<f64>,
-    /// Constraint forces, three components each.
-    pub reactions: Vec<f64>,
-    /// Forces at the contacts.
-    pub contacts: Vec<ContactForce>,
-    /// Condition numbers of the linear systems.
-    pub conditions: Option<Conditions>,
-    /// Outputs.
-    pub outputs: Vec<f64>,
-    /// M ω̇ + b − Π for the pseudo-accelerations of the case, where it has some.
-    pub inverse_dynamics: Option<Vec<f64>>,
+    /// The wanted ones by their keys, in SI; numbers that are not finite are `null`.
+    pub fields: Map<String, Value>,
+    /// Whether all that were evaluated are finite, apart from friction demands and condition numbers.
+    pub is_finite: bool,
 }
 
 /// The equations of a model, to be evaluated at cases.
@@ -104,16 +166,13 @@ impl Model {
     /// let cases = Cases::read("cases.json", cases, model.info())?;
     /// let evaluation = model.evaluation(cases.quantities())?;
     /// for case in cases.iter() {
-    ///     assert!(evaluation.at(&case).rates[0] < 0.0);
+    ///     assert!(evaluation.at(&case).fields["rates"]["omega"].as_f64() < Some(0.0));
     /// }
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn evaluation(&self, wanted: BTreeSet<&'static str>) -> Result<Evaluation<'_>, Error> {
-        let asked = |keys: &[&str]| keys.iter().any(|key| wanted.contains(key));
-        let functions = QUANTITIES.iter().filter(|(keys, _)| asked(keys));
-        let functions: Vec<FunctionKind> =
-            functions.flat_map(|(_, of)| of.iter().copied()).collect();
-        self.require(&functions)?;
+        let functions = groups(&wanted).flat_map(|group| group.functions);
+        self.require(&functions.copied().collect::<Vec<_>>())?;
         let inputs = ModelInputs::new(self.info(), &ZeroInputs)?;
         Ok(Evaluation {
             model: self,
@@ -137,10 +196,25 @@ impl Evaluation<'_> {
             u: &u,
             p: &case.p,
         };
-        let accelerations = case.accelerations.as_deref();
-        Values::at(self.model.equations(), at, accelerations, |keys| {
-            keys.iter().any(|key| self.wanted.contains(key))
-        })
+        let place = Place {
+            model: self.model.equations(),
+            info: self.model.info(),
+            at,
+            accelerations: case.accelerations.as_deref(),
+        };
+        let (mut fields, mut all_finite) = (Map::new(), true);
+        for group in groups(&self.wanted) {
+            for (&key, value) in group.keys.iter().zip((group.values)(&place)) {
+                all_finite &= UNBOUNDED.contains(&key) || is_finite(&value);
+                if self.wanted.contains(key) {
+                    fields.insert(key.to_owned(), value);
+                }
+            }
+        }
+        Values {
+            fields,
+            is_finite: all_finite,
+        }
     }
 
     /// Writes the values of cases as JSON, one by one, with their names; non-finite numbers are `null`. `see` is called with
@@ -170,7 +244,7 @@ impl Evaluation<'_> {
         let cases = cases.enumerate().map(|(index, case)| {
             let values = self.at(&case);
             see(index, &case, &values);
-            values.to_json(info, &self.wanted)
+            values.fields
         });
         map.serialize_entry("cases", &List(RefCell::new(cases)))?;
         map.end()?;
@@ -181,172 +255,54 @@ impl Evaluation<'_> {
 /// A list whose items are made while it is written.
 struct List<I>(RefCell<I>);
 
-impl<I: Iterator<Item = Value>> Serialize for List<I> {
+impl<I: Iterator<Item: Serialize>> Serialize for List<I> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(&mut *self.0.borrow_mut())
     }
 }
 
-impl Values {
-    fn at(
-        model: &dyn Equations,
-        at: At<'_>,
-        accelerations: Option<&[f64]>,
-        asked: impl Fn(&[&str]) -> bool,
-    ) -> Self {
-        let info = model.info();
-        let (n, s, m, k) = (
-            info.state_len(),
-            info.speeds,
-            info.input_len(),
-            info.parameter_len(),
-        );
-        let filled = |key: &str, count: usize, fill: &dyn Fn(&mut [f64])| {
-            let mut values = Vec::new();
-            if asked(&[key]) {
-                values.resize(count, 0.0);
-                fill(&mut values);
-            }
-            values
-        };
-        let [mut a, mut b, mut mass_matrix, mut bias, mut forces] = [(); 5].map(|()| Vec::new());
-        if asked(&["A", "B"]) {
-            (a, b) = (vec![0.0; n * n], vec![0.0; n * m]);
-            model.jacobians(at, &mut vec![0.0; n], &mut a, &mut b);
-        }
-        if asked(&["mass_matrix", "bias", "generalized_forces"]) {
-            (mass_matrix, bias, forces) = (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
-            model.appell(at, &mut mass_matrix, &mut bias, &mut forces);
-        }
-        let energies = [
-            "acceleration_energy",
-            "kinetic_energy",
-            "potential_energy",
-            "power",
-        ];
-        let (rows, reactions) = (info.constraint_rows.len(), info.reactions.len());
-        Self {
-            rates: filled("rates", n, &|rates| model.rates(at, rates)),
-            a,
-            b,
-            p: filled("P", n * k, &|p| model.parameter_jacobian(at, p)),
-            mass_matrix,
-            bias,
-            forces,
-            energies: if asked(&energies) {
-                model.energies(at)
-            } else {
-                Energies::default()
-            },
-            residual: filled("constraint_residual", rows, &|rows| {
-                model.constraint_residual(at, rows);
-            }),
-            reactions: filled("constraint_forces", 3 * reactions, &|forces| {
-                model.constraint_forces(at, forces);
-            }),
-            contacts: if asked(&["contacts"]) {
-                ContactForces::new().at(model, at).to_vec()
-            } else {
-                Vec::new()
-            },
-            conditions: asked(&["conditions"]).then(|| Conditions::of(model, at)),
-            outputs: filled("outputs", info.output_len(), &|outputs| {
-                model.outputs(at, outputs);
-            }),
-            inverse_dynamics: accelerations.map(|given| {
-                filled("inverse_dynamics", s, &|demand| {
-                    model.inverse_dynamics(at, given, demand);
-                })
-            }),
-        }
-    }
+/// The groups with a wanted quantity.
+fn groups(wanted: &BTreeSet<&str>) -> impl Iterator<Item = &'static Group> {
+    QUANTITIES
+        .iter()
+        .filter(|group| group.keys.iter().any(|key| wanted.contains(key)))
+}
 
-    /// Whether all quantities are finite, apart from friction demands and condition numbers.
-    pub fn is_finite(&self) -> bool {
-        let energies = [
-            self.energies.kinetic,
-            self.energies.potential,
-            self.energies.power,
-            self.energies.acceleration,
-        ];
-        let demand = self.inverse_dynamics.as_deref();
-        let lists: [&[f64]; 12] = [
-            &self.rates,
-            &self.a,
-            &self.b,
-            &self.p,
-            &self.mass_matrix,
-            &self.bias,
-            &self.forces,
-            &self.residual,
-            &self.reactions,
-            &self.outputs,
-            &energies,
-            demand.unwrap_or_default(),
-        ];
-        lists.into_iter().flatten().all(|value| value.is_finite())
-    }
+/// So many numbers, written by a function.
+fn filled(count: usize, fill: impl FnOnce(&mut [f64])) -> Vec<f64> {
+    let mut values = vec![0.0; count];
+    fill(&mut values);
+    values
+}
 
-    fn to_json(&self, info: &ModelInfo, wanted: &BTreeSet<&str>) -> Value {
-        let rows = |values: &[f64], columns: usize| -> Value {
-            let rows = values
-                .len()
-                .checked_div(columns)
-                .unwrap_or(info.state_len());
-            (0..rows)
-                .map(|row| json!(&values[row * columns..][..columns]))
-                .collect()
-        };
-        let reactions: Map<String, Value> = info
-            .reactions
-            .iter()
-            .zip(self.reactions.chunks(3))
-            .map(|(reaction, force)| (reaction.name.to_string(), json!(force)))
-            .collect();
-        let mut all = json!({
-            "rates": named(&info.states, &self.rates),
-            "mass_matrix": rows(&self.mass_matrix, info.speeds),
-            "bias": self.bias,
-            "generalized_forces": self.forces,
-            "A": rows(&self.a, info.state_len()),
-            "B": rows(&self.b, info.input_len()),
-            "P": rows(&self.p, info.parameter_len()),
-            "acceleration_energy": self.energies.acceleration,
-            "kinetic_energy": self.energies.kinetic,
-            "potential_energy": self.energies.potential,
-            "power": self.energies.power,
-            "constraint_residual": self.residual,
-            "constraint_forces": reactions,
-            "contacts": self.contacts(info),
-            "conditions": self.conditions.as_ref().map(|conditions| json!({
-                "mass_matrix": conditions.mass_matrix,
-                "velocities": conditions.velocities,
-                "systems": conditions.systems,
-            })),
-            "outputs": named(&info.outputs, &self.outputs),
-        });
-        if let Some(demand) = &self.inverse_dynamics {
-            all["inverse_dynamics"] = json!(demand);
-        }
-        if let Value::Object(all) = &mut all {
-            all.retain(|key, _| wanted.contains(key.as_str()));
-        }
-        all
-    }
+/// A matrix as a list of rows.
+fn rows(values: &[f64], [rows, columns]: [usize; 2]) -> Value {
+    (0..rows)
+        .map(|row| json!(&values[row * columns..][..columns]))
+        .collect()
+}
 
-    /// The contact forces. An infinite friction demand is `null`.
-    fn contacts(&self, info: &ModelInfo) -> Map<String, Value> {
-        let contacts = info.contacts.iter().zip(&self.contacts);
-        contacts
-            .map(|(contact, force)| {
-                let mut entry = json!({ "normal_force": force.normal });
-                if contact.grips {
-                    entry["tangential_force"] = json!(force.tangential);
-                    entry["friction_demand"] = json!(force.demand());
-                    entry["friction"] = json!(force.friction);
-                }
-                (contact.name.to_string(), entry)
-            })
-            .collect()
+/// The contact forces. An infinite friction demand is `null`.
+fn contacts(of: &Place<'_>) -> Value {
+    let mut forces = ContactForces::new();
+    let contacts = of.info.contacts.iter().zip(forces.at(of.model, of.at));
+    object(contacts.map(|(contact, force)| {
+        let mut entry = json!({ "normal_force": force.normal });
+        if contact.grips {
+            entry["tangential_force"] = json!(force.tangential);
+            entry["friction_demand"] = json!(force.demand());
+            entry["friction"] = json!(force.friction);
+        }
+        (&contact.name, entry)
+    }))
+}
+
+/// Whether all numbers in a value are finite; others are `null`.
+fn is_finite(value: &Value) -> bool {
+    match value {
+        Value::Null => false,
+        Value::Array(values) => values.iter().all(is_finite),
+        Value::Object(fields) => fields.values().all(is_finite),
+        _ => true,
     }
 }

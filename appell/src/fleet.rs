@@ -10,11 +10,10 @@ use std::path::{Component, Path, PathBuf};
 use appell_gap::diagnose::{ENGINE, Options};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
-use serde::Deserialize;
 use serde_json::Value;
 
 use crate::diagnosis::Library;
-use crate::gap_report::Hypothesis;
+use crate::gap_report::GapReport;
 use crate::json::in_names_of;
 use crate::{Error, Field, diagnosis, files, gap_report, recording};
 
@@ -36,51 +35,14 @@ pub struct Fleet<'a> {
 }
 
 /// A rig after its diagnosis.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub struct Rig {
     /// Name of the folder, with parent folders if ambiguous.
     pub name: String,
-    /// The summary of its report, or why there is none.
-    pub outcome: Result<Summary, String>,
+    /// Its report, or why there is none.
+    pub outcome: Result<GapReport, String>,
     /// Whether its report was reused.
     pub is_known: bool,
-}
-
-/// A report in a row of the table.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Summary {
-    /// Name of the mechanism.
-    pub mechanism: String,
-    /// The verdict.
-    pub verdict: String,
-    /// The hypotheses, the most probable first.
-    pub which: Vec<Hypothesis>,
-    /// Prediction errors on held-out runs; nothing without such runs.
-    pub how_far: Option<Closed>,
-}
-
-/// How far the gap closes.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Closed {
-    /// Horizon in s.
-    pub horizon_s: f64,
-    /// Prediction error of the stated model, in units of the noise.
-    pub nominal: f64,
-    /// The same with the diagnosed effect.
-    pub with_effect: Option<f64>,
-    /// Part of the gap that closes.
-    pub closed: Option<f64>,
-    /// The parts of the gap.
-    pub budget: Vec<Part>,
-}
-
-/// A part of the gap.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Part {
-    /// An effect, `refit`, `law` or `unexplained`.
-    pub effect: String,
-    /// How much of the gap it is.
-    pub closed: Option<f64>,
 }
 
 impl Fleet<'_> {
@@ -110,13 +72,13 @@ impl Fleet<'_> {
         let is_known = matches!(outcome, Ok((_, true)));
         Rig {
             name: name.to_owned(),
-            outcome: outcome.map(|(summary, _)| summary),
+            outcome: outcome.map(|(report, _)| report),
             is_known,
         }
     }
 
     /// The report of a folder, and whether it was there.
-    fn report(&self, folder: &Path, name: &str) -> Result<(Summary, bool), Error> {
+    fn report(&self, folder: &Path, name: &str) -> Result<(GapReport, bool), Error> {
         let path = self.reports.join(format!("{name}.json"));
         let set = recording::read(&[folder.to_owned()], self.model)?;
         let of = self.fingerprint(folder, &set.spec.text)?;
@@ -132,7 +94,7 @@ impl Fleet<'_> {
             pictures: self.with_pages,
             ..Options::default()
         };
-        let report = self.library.diagnose(&set, &options, |_| {})?;
+        let report = self.library.diagnose(None, &set, &options, |_| {})?;
         let warnings = recording::warnings(&set);
         let findings = [self.library.warnings.as_slice(), &warnings].concat();
         let json = gap_report::json(&report, None, &findings);
@@ -180,7 +142,7 @@ pub fn csv(rigs: &[Rig]) -> String {
         .to_owned();
     for rig in rigs {
         let cells = match &rig.outcome {
-            Ok(summary) => summary.cells(),
+            Ok(report) => cells(report),
             Err(reason) => {
                 let mut cells = vec![String::new(); 9];
                 cells.push(reason.clone());
@@ -195,52 +157,22 @@ pub fn csv(rigs: &[Rig]) -> String {
     text
 }
 
-impl Summary {
-    /// The most probable hypothesis in words.
-    pub fn first(&self) -> (String, f64) {
-        self.which.first().map_or_else(
-            || (String::new(), f64::NAN),
-            |first| {
-                let name = if first.effects.is_empty() {
-                    "nominal model".to_owned()
-                } else {
-                    first.effects.join(" + ")
-                };
-                (name, first.probability)
-            },
-        )
-    }
-
-    /// The budget in words, the largest part first.
-    pub fn budget(&self) -> String {
-        let mut parts: Vec<(&str, f64)> = (self.how_far.iter())
-            .flat_map(|far| &far.budget)
-            .filter_map(|part| Some((part.effect.as_str(), part.closed?)))
-            .collect();
-        parts.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let parts = parts
-            .into_iter()
-            .map(|(name, closed)| format!("{name} {:.1} %", 100.0 * closed));
-        parts.collect::<Vec<_>>().join("; ")
-    }
-
-    fn cells(&self) -> Vec<String> {
-        let (first, probability) = self.first();
-        let far = self.how_far.as_ref();
-        let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.6e}"));
-        vec![
-            self.mechanism.clone(),
-            self.verdict.clone(),
-            first,
-            number(Some(probability)),
-            number(far.map(|far| far.horizon_s)),
-            number(far.map(|far| far.nominal)),
-            number(far.and_then(|far| far.with_effect)),
-            number(far.and_then(|far| far.closed)),
-            self.budget(),
-            String::new(),
-        ]
-    }
+fn cells(report: &GapReport) -> Vec<String> {
+    let (first, probability) = report.first();
+    let far = report.how_far.as_ref();
+    let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.6e}"));
+    vec![
+        report.mechanism.clone(),
+        report.verdict.clone(),
+        first,
+        number(Some(probability)),
+        number(far.and_then(|far| far.horizon_s)),
+        number(far.and_then(|far| far.nominal)),
+        number(far.and_then(|far| far.with_effect)),
+        number(far.and_then(|far| far.closed)),
+        report.budget(),
+        String::new(),
+    ]
 }
 
 /// A cell of a CSV file.

@@ -107,13 +107,13 @@ fn ahead(ahead: &Ahead) -> Value {
     })
 }
 
-/// The parts of a written report that change a spec.
+/// The parts of a written report that change a spec, or stand in the table of several rigs.
 #[derive(Debug, Deserialize)]
 pub struct GapReport {
     schema: String,
     /// Its verdict.
     #[serde(default)]
-    verdict: String,
+    pub verdict: String,
     /// Name of the mechanism.
     pub mechanism: String,
     /// The format of the robot file that was diagnosed, `URDF` or `MJCF`.
@@ -125,27 +125,39 @@ pub struct GapReport {
     which: Vec<Hypothesis>,
     #[serde(default)]
     tied: Vec<Vec<String>>,
+    /// Prediction errors on held-out runs; nothing without such runs.
     #[serde(default)]
-    how_far: Option<HowFar>,
+    pub how_far: Option<HowFar>,
 }
 
-/// The shares of the gap on the held-out runs.
-#[derive(Debug, Deserialize)]
-struct HowFar {
-    #[serde(default)]
+/// How far the gap closes on the held-out runs.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct HowFar {
+    /// Horizon in s.
+    pub horizon_s: Option<f64>,
+    /// Prediction error of the stated model, in units of the noise.
+    pub nominal: Option<f64>,
+    /// The same with the diagnosed effect.
+    pub with_effect: Option<f64>,
+    /// Part of the gap that closes.
+    pub closed: Option<f64>,
     budget: Vec<Share>,
 }
 
+/// A part of the gap: an effect, `refit`, `law` or `unexplained`.
 #[derive(Debug, Deserialize)]
 struct Share {
     effect: String,
-    interval: [f64; 2],
+    /// How much of the gap it is.
+    closed: Option<f64>,
+    interval: [Option<f64>; 2],
     #[serde(rename = "material")]
     is_material: bool,
 }
 
 /// A hypothesis of a report.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 pub struct Hypothesis {
     /// Its effects.
     pub effects: Vec<String>,
@@ -156,7 +168,7 @@ pub struct Hypothesis {
     changes: Option<Changes>,
 }
 
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 pub(crate) struct Found {
     pub(crate) name: String,
     pub(crate) value: Option<f64>,
@@ -235,7 +247,33 @@ impl GapReport {
     /// Whether the fitted numbers close a material share of the errors on the held-out runs.
     fn needs_refit(&self) -> bool {
         let mut shares = self.how_far.iter().flat_map(|far| &far.budget);
-        shares.any(|share| share.effect == REFIT && share.is_material && share.interval[0] > 0.0)
+        shares.any(|share| {
+            share.effect == REFIT && share.is_material && share.interval[0] > Some(0.0)
+        })
+    }
+
+    /// The most probable hypothesis in words, and its probability.
+    pub fn first(&self) -> (String, f64) {
+        let Some(first) = self.which.first() else {
+            return (String::new(), f64::NAN);
+        };
+        let name = match &first.effects[..] {
+            [] => "nominal model".to_owned(),
+            effects => effects.join(" + "),
+        };
+        (name, first.probability)
+    }
+
+    /// The parts of the gap in words, the largest first.
+    pub fn budget(&self) -> String {
+        let mut parts: Vec<(&str, f64)> = (self.how_far.iter())
+            .flat_map(|far| &far.budget)
+            .filter_map(|part| Some((part.effect.as_str(), part.closed?)))
+            .collect();
+        parts.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let parts = parts.into_iter();
+        let parts = parts.map(|(name, closed)| format!("{name} {:.1} %", 100.0 * closed));
+        parts.collect::<Vec<_>>().join("; ")
     }
 
     fn numbered(&self, place: usize) -> Result<&Hypothesis, Error> {

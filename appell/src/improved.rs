@@ -5,30 +5,22 @@ use std::fmt::Write as _;
 use appell_gap::diagnose::{Changes, Refitted, SignalEffect};
 use appell_report::text::{number, with_unit};
 use appell_spec::foreign::toml_string;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::Error;
+use crate::correction::{Correction, tied};
 use crate::gap_report::{Found, GapReport, Hypothesis};
 use crate::source::Source;
-
-/// A spec with the changes of a hypothesis.
-pub struct Improved<'a> {
-    /// The text of the spec.
-    pub spec: String,
-    report: &'a GapReport,
-    hypothesis: &'a Hypothesis,
-    changes: Changes,
-}
 
 impl Source {
     /// The spec with a hypothesis of a gap report, numbered from 1; by default the most probable one.
     /// Comments and layout are preserved. The result is a valid spec; `file` is its name in error messages.
-    pub fn improved<'a>(
+    pub fn improved(
         &self,
-        report: &'a GapReport,
+        report: &GapReport,
         hypothesis: Option<usize>,
         file: &str,
-    ) -> Result<Improved<'a>, Error> {
+    ) -> Result<Correction, Error> {
         let name = self.mechanism()?.name;
         if report.mechanism != name {
             let message = format!(
@@ -43,77 +35,64 @@ impl Source {
         let spec = changes.improved(&self.text, &note);
         let spec = spec.map_err(|error| Error::data(&self.file, error.to_string()))?;
         appell_spec::load(file, &spec)?;
-        Ok(Improved {
-            spec,
-            report,
-            hypothesis,
-            changes,
+        let rivals = report.rivals(hypothesis);
+        Ok(Correction {
+            text: spec,
+            about: format!(
+                "{} with {} ({:.1} %)",
+                report.mechanism,
+                hypothesis.name(),
+                100.0 * hypothesis.probability
+            ),
+            lines: lines(hypothesis, &changes, &rivals),
+            edits: json!({ "edits": changes, "tied_with": rivals }),
         })
     }
 }
 
-impl Improved<'_> {
-    /// The changes, those that belong elsewhere included, as JSON.
-    pub fn json(&self) -> Value {
-        let edits = json!(self.changes);
-        json!({ "edits": edits, "tied_with": self.report.rivals(self.hypothesis) })
+/// The changes written to a spec, and those that belong elsewhere.
+fn lines(hypothesis: &Hypothesis, changes: &Changes, rivals: &[&str]) -> String {
+    let mut text = String::new();
+    let of =
+        |value: &Found, one: &SignalEffect| value.name.starts_with(&format!("{}.", one.effect));
+    let effects = &changes.signal_effects;
+    let others = hypothesis.parameters.iter();
+    let is_elsewhere = |one: &SignalEffect| one.output.is_none();
+    let others = others.filter(|value| {
+        let mut signals = effects.iter().filter(|one| is_elsewhere(one));
+        !signals.any(|one| of(value, one))
+    });
+    // Writing to a string cannot fail.
+    for value in others {
+        let _ = writeln!(text, "  found     {} = {}", value.name, value.sentence());
     }
-
-    /// The changes written to the spec `file`, and those that belong elsewhere.
-    pub fn summary(&self, file: &str) -> String {
-        let (hypothesis, changes) = (self.hypothesis, &self.changes);
-        let mut text = format!(
-            "{file}: {} with {} ({:.1} %)\n",
-            self.report.mechanism,
-            hypothesis.name(),
-            100.0 * hypothesis.probability
-        );
-        let of =
-            |value: &Found, one: &SignalEffect| value.name.starts_with(&format!("{}.", one.effect));
-        let effects = &changes.signal_effects;
-        let others = hypothesis.parameters.iter();
-        let is_elsewhere = |one: &SignalEffect| one.output.is_none();
-        let others = others.filter(|value| {
-            let mut signals = effects.iter().filter(|one| is_elsewhere(one));
-            !signals.any(|one| of(value, one))
-        });
-        // Writing to a string cannot fail.
-        for value in others {
-            let _ = writeln!(text, "  found     {} = {}", value.name, value.sentence());
-        }
-        for one in &changes.parameters {
-            let _ = writeln!(text, "  changed   {}", refitted(one));
-        }
-        let is_of = |one: &Refitted, effect: &SignalEffect| {
-            one.name
-                .strip_prefix(&effect.effect)
-                .is_some_and(|rest| rest.starts_with('.'))
-        };
-        let gains = changes.gains.iter();
-        for one in gains.filter(|one| !effects.iter().any(|effect| is_of(one, effect))) {
-            let _ = writeln!(text, "  changed   {}", refitted(one));
-        }
-        for one in effects {
-            let mut values = hypothesis.parameters.iter();
-            let value = values.find(|value| of(value, one)).map(Found::sentence);
-            let gain = changes.gains.iter().find(|gain| is_of(gain, one));
-            let value = value.or_else(|| gain.map(|gain| number(gain.value)));
-            let value = value.unwrap_or_default();
-            let _ = writeln!(text, "  elsewhere {}", elsewhere(one, &value));
-        }
-        for rival in self.report.rivals(hypothesis) {
-            let _ = writeln!(
-                text,
-                "  tied with {rival}: these recordings cannot distinguish them"
-            );
-        }
-        if !changes.parameters.is_empty() {
-            text += "  note      `[parameters]` of a recording.toml override those of a spec: enter \
-            the new values there too\n";
-            text += &for_recordings(&changes.parameters);
-        }
-        text
+    for one in &changes.parameters {
+        let _ = writeln!(text, "  changed   {}", refitted(one));
     }
+    let is_of = |one: &Refitted, effect: &SignalEffect| {
+        one.name
+            .strip_prefix(&effect.effect)
+            .is_some_and(|rest| rest.starts_with('.'))
+    };
+    let gains = changes.gains.iter();
+    for one in gains.filter(|one| !effects.iter().any(|effect| is_of(one, effect))) {
+        let _ = writeln!(text, "  changed   {}", refitted(one));
+    }
+    for one in effects {
+        let mut values = hypothesis.parameters.iter();
+        let value = values.find(|value| of(value, one)).map(Found::sentence);
+        let gain = changes.gains.iter().find(|gain| is_of(gain, one));
+        let value = value.or_else(|| gain.map(|gain| number(gain.value)));
+        let value = value.unwrap_or_default();
+        let _ = writeln!(text, "  elsewhere {}", elsewhere(one, &value));
+    }
+    text += &tied(rivals);
+    if !changes.parameters.is_empty() {
+        text += "  note      `[parameters]` of a recording.toml override those of a spec: enter \
+        the new values there too\n";
+        text += &for_recordings(&changes.parameters);
+    }
+    text
 }
 
 impl Found {

@@ -83,6 +83,7 @@ pub use appell_runtime::trajectory::{CsvOptions, Extras};
 pub use appell_spec::{Code, Diagnostic, Mechanism, Report, Severity};
 pub use error::{Class, Error, ExpressionError};
 pub use field::Field;
+pub use inputs::tabulated::Remarks;
 pub use model::{Model, diagnose};
 pub use motion::{Driven, Law, MOST_ROWS, Motion, Simulated};
 pub use source::Source;

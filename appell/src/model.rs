@@ -14,7 +14,6 @@ use appell_runtime::model::{Model as Equations, ModelInfo};
 use appell_runtime::simulate::SimulationError;
 use appell_runtime::{Simulation, Trajectory};
 
-use crate::control::attraction::{self, Explored};
 use crate::control::{Design, Request, Schedule, law_file};
 use crate::engine::{self, Engine, Made};
 use crate::motion::{Motion, Simulated};
@@ -304,26 +303,6 @@ impl Model {
         schedule.law(&self.setup()?, self.name())
     }
 
-    /// Which motions settle under a law, from a grid of disturbances of one or two states such as
-    /// `theta=-20deg..20deg/8,r=-10cm..10cm/8`, each simulated for `duration` seconds; `progress` is called
-    /// with the number of completed motions and their total.
-    pub fn attraction(
-        &self,
-        design: &Design,
-        grid: &str,
-        duration: f64,
-        progress: &(dyn Fn(usize, usize) + Sync),
-    ) -> Result<Explored<'_>, Error> {
-        attraction::explore(
-            self.equations(),
-            &self.setup()?,
-            design,
-            grid,
-            duration,
-            progress,
-        )
-    }
-
     /// A design as the text of a feedback file, for [`Motion::feedback`].
     pub fn law(&self, design: &Design) -> Result<String, Error> {
         if design.law.is_none() {
@@ -335,7 +314,7 @@ impl Model {
 
     /// Recordings of the mechanism: a folder with a `recording.toml`, or CSV files.
     pub fn recordings(&self, paths: &[PathBuf]) -> Result<DataSet, Error> {
-        recording::read_of(&self.source, paths)
+        recording::read_with(paths, Some(&self.source))
     }
 
     /// Estimates parameters by maximum likelihood; `stage` is called with the name of each step.
@@ -358,5 +337,5 @@ pub fn diagnose(
     options: &gap::Options,
     stage: impl FnMut(&'static str),
 ) -> Result<gap::Report, Error> {
-    diagnosis::Library::shipped()?.diagnose(set, options, stage)
+    diagnosis::Library::shipped()?.diagnose(None, set, options, stage)
 }

@@ -13,8 +13,9 @@ use appell_runtime::trajectory::{Extras, NotFinite};
 use appell_runtime::{Simulation, Trajectory};
 
 use crate::inputs::controller::{Controller, Plan, Wiring};
-use crate::inputs::{feedback, tabulated};
-use crate::setup::{Assignment, Setup};
+use crate::inputs::feedback;
+use crate::inputs::tabulated::{self, Remarks};
+use crate::setup::{Assignment, Setup, assigning};
 use crate::{Error, Field};
 
 /// Maximum number of rows of a trajectory.
@@ -95,16 +96,8 @@ pub struct Simulated {
     pub failure: Option<String>,
     /// Which inputs, outputs and energies are no numbers, if any is.
     pub undefined: Option<String>,
-    /// Whether neither inputs nor feedback drive the mechanism.
-    pub undriven: bool,
-    /// The time in s from which the last values of recorded inputs are held, if it comes before the end.
-    pub held_from: Option<f64>,
-    /// A remark on recorded inputs that are held by default.
-    pub smooth: Option<String>,
-    /// Coordinates in the first row of a recorded run whose inputs drive the motion, if it begins elsewhere.
-    pub begins: Option<String>,
-    /// What differs in that run from the other runs, and so from the model, a sentence for each parameter.
-    pub differs: Vec<String>,
+    /// What there is to say about its inputs.
+    pub remarks: Remarks,
 }
 
 impl Motion {
@@ -131,25 +124,13 @@ impl Motion {
         }
     }
 
-    /// Sets a parameter.
-    #[must_use]
-    pub fn set(mut self, name: &str, value: impl ToString) -> Self {
-        self.parameters.push(Assignment::new(name, value));
-        self
-    }
-
-    /// Sets an initial value.
-    #[must_use]
-    pub fn initial(mut self, name: &str, value: impl ToString) -> Self {
-        self.initial.push(Assignment::new(name, value));
-        self
-    }
-
-    /// Drives an input by an expression in t, states and parameters.
-    #[must_use]
-    pub fn input(mut self, name: &str, expression: impl ToString) -> Self {
-        self.inputs.push(Assignment::new(name, expression));
-        self
+    assigning! {
+        /// Sets a parameter.
+        set to parameters;
+        /// Sets an initial value.
+        initial to initial;
+        /// Drives an input by an expression in t, states and parameters.
+        input to inputs;
     }
 
     /// Drives inputs by a function of time and state, in SI, that writes all declared inputs.
@@ -222,7 +203,6 @@ impl Motion {
         setup.watch_ranges = self.validity.ranges == Response::Stop;
         setup.set(&self.parameters)?;
         let plan = self.plan(model, &mut setup, name)?;
-        let undriven = plan.is_empty();
         let mut options = self.options;
         let is_opaque = |driven: &Driven| {
             let x: Vec<Enclosure> = setup.initial.iter().map(|&x| Real::constant(x)).collect();
@@ -241,12 +221,9 @@ impl Motion {
             // A program is not sampled between two rows: steps are at most as long as their interval.
             options.max_step = options.max_step.min(interval);
         }
-        let recorded = plan.recorded.as_ref();
-        let until = recorded.map(|table| table.until);
-        let held_from = until.filter(|until| until + interval < self.t_end);
-        let smooth = recorded.and_then(|table| smooth_inputs(&table.smooth));
-        let begins = recorded.and_then(|table| table.begins.clone());
-        let differs = recorded.map_or_else(Vec::new, |table| table.differs.clone());
+        let mut remarks = plan.remarks.clone();
+        remarks.undriven = plan.is_empty();
+        remarks.held_from = (remarks.held_from).filter(|from| from + interval < self.t_end);
         let wiring = plan.wiring(&setup, self.t_end)?;
         Ok(Ready {
             wiring,
@@ -254,11 +231,7 @@ impl Motion {
             initial: setup.initial,
             interval,
             options,
-            undriven,
-            held_from,
-            smooth,
-            begins,
-            differs,
+            remarks,
         })
     }
 
@@ -333,11 +306,7 @@ pub(crate) struct Ready {
     pub(crate) initial: Vec<f64>,
     pub(crate) interval: f64,
     pub(crate) options: Options,
-    undriven: bool,
-    held_from: Option<f64>,
-    smooth: Option<String>,
-    begins: Option<String>,
-    differs: Vec<String>,
+    remarks: Remarks,
 }
 
 impl Ready {
@@ -367,26 +336,9 @@ impl Ready {
             undefined: undefined(&trajectory),
             trajectory,
             failure,
-            undriven: self.undriven,
-            held_from: self.held_from,
-            smooth: self.smooth.clone(),
-            begins: self.begins.clone(),
-            differs: self.differs.clone(),
+            remarks: self.remarks.clone(),
         })
     }
-}
-
-/// A remark on inputs that seem to be sampled from a continuous signal.
-fn smooth_inputs(inputs: &[(String, f64)]) -> Option<String> {
-    let one = |(name, late): &(String, f64)| format!("`{name}` by {:.2} %", 100.0 * late);
-    let texts: Vec<String> = inputs.iter().map(one).collect();
-    (!texts.is_empty()).then(|| {
-        format!(
-            "inputs change smoothly from row to row, and each row is held to the next: if they were sampled from a \
-             continuous signal, they act half a row late ({} of their size); write `linear` or `hold`",
-            texts.join(", ")
-        )
-    })
 }
 
 /// Which inputs, outputs and energies of a motion are no numbers, and from when on.

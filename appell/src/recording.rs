@@ -22,11 +22,6 @@ pub fn read(paths: &[PathBuf], model: Option<&str>) -> Result<DataSet, Error> {
     read_with(paths, model.map(Source::find).transpose()?.as_ref())
 }
 
-/// Recordings of a mechanism: a folder with a `recording.toml`, or CSV files.
-pub fn read_of(source: &Source, paths: &[PathBuf]) -> Result<DataSet, Error> {
-    read_with(paths, Some(source))
-}
-
 /// Recordings in memory. Without a description, the text of a `recording.toml` with its path, columns have the names
 /// and units of the mechanism.
 pub fn read_frames(
@@ -163,7 +158,8 @@ fn library() -> Vec<(&'static str, Spec)> {
     shipped.collect()
 }
 
-fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Error> {
+/// Recordings of a mechanism: a folder with a `recording.toml`, or CSV files.
+pub(crate) fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Error> {
     if let Some(path) = paths.iter().find(|path| !path.exists()) {
         let message = format!("there is no folder or file `{}`", path.display());
         return Err(Error::request(Field::Recordings, message));
@@ -194,6 +190,14 @@ pub fn source(set: &DataSet) -> Source {
         shipped: shipped.find(|shipped| shipped.spec == set.spec.text),
         ..Source::of(&*set.spec.file, &*set.spec.text)
     }
+}
+
+/// The specs of models: shipped names, paths of specs or robot files.
+pub fn specs(models: &[String]) -> Result<Vec<Spec>, Error> {
+    let specs = models.iter();
+    specs
+        .map(|model| Ok(Spec::from(&Source::find(model)?)))
+        .collect()
 }
 
 /// The data set with warnings about units.

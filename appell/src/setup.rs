@@ -38,6 +38,19 @@ impl Assignment {
     }
 }
 
+/// Methods of a request that add an assignment to one of its lists.
+macro_rules! assigning {
+    ($($(#[$about:meta])* $method:ident to $list:ident;)*) => {$(
+        $(#[$about])*
+        #[must_use]
+        pub fn $method(mut self, name: &str, value: impl ToString) -> Self {
+            self.$list.push($crate::setup::Assignment::new(name, value));
+            self
+        }
+    )*};
+}
+pub(crate) use assigning;
+
 impl std::str::FromStr for Assignment {
     type Err = String;
 

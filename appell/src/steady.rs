@@ -127,18 +127,3 @@ pub(crate) fn value_of(
     })?;
     setup.value(field, name, value, &unit)
 }
-
-/// A prescribed value of a term in SI; a state stays in its range.
-pub(crate) fn value_in_range(
-    setup: &Setup<'_>,
-    term: Term,
-    field: Field,
-    fixed: &Assignment,
-) -> Result<f64, Error> {
-    let value = value_of(setup, term, field, fixed)?;
-    if let Term::State(state) = term {
-        let within = setup.state_within(state, value);
-        within.map_err(|message| Error::request(field, message))?;
-    }
-    Ok(value)
-}

@@ -1,6 +1,6 @@
 //! Laws about motions that advance.
 
-use appell::control::{Request, attraction};
+use appell::control::Request;
 use appell::setup::Assignment;
 use appell::{Class, Model};
 
@@ -13,11 +13,9 @@ fn a_law_about_an_advancing_motion_settles() {
     assert!(design.outputs.contains(&position));
     assert!((design.running(position) - 1.0).abs() < 1e-12);
 
-    let setup = model.setup().unwrap();
-    let grid = "x=-1..1/2";
-    let explored =
-        attraction::explore(model.equations(), &setup, &design, grid, 5.0, &|_, _| {}).unwrap();
-    let fates = &appell::json::attraction(&explored)["fates"];
+    let explored = model.attraction(&design, "x=-1..1/2", 5.0, &|_, _| {});
+    let explored = explored.unwrap();
+    let fates = &explored.to_json()["fates"];
     assert_eq!(fates, &serde_json::json!(["settled", "settled", "settled"]));
 }
 

@@ -68,12 +68,12 @@ pub(crate) fn rows(equations: &MotionEquations, states: &[usize]) -> Result<Vec<
 
 /// A computation that fails for this reason.
 pub(crate) fn failed(reason: &str) -> Error {
-    Error::Computation(reason.to_owned().into())
+    Error::computation(reason.to_owned())
 }
 
 /// A computation that fails with this error.
 pub(crate) fn computation(error: impl std::fmt::Display) -> Error {
-    Error::Computation(error.to_string().into())
+    Error::computation(error.to_string())
 }
 
 /// A text with passages replaced, one after another.

@@ -26,6 +26,14 @@ pub fn table(rows: &[Vec<String>], numbers: std::ops::Range<usize>) -> String {
     text
 }
 
+/// A row of a table, with everything that can be displayed as a cell.
+#[macro_export]
+macro_rules! row {
+    ($($cell:expr),* $(,)?) => {
+        vec![$($cell.to_string()),*]
+    };
+}
+
 /// Widths of the columns of some rows.
 pub(crate) fn widths(rows: &[Vec<String>], width: impl Fn(&str) -> usize) -> Vec<usize> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);

@@ -70,7 +70,6 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-codegen",
             "appell-models",
             "appell-runtime",
-            "appell-spectra",
             "appell-analysis",
             "appell-estimate",
             "appell-recordings",

@@ -90,7 +90,7 @@ impl Thorough {
     }
 
     /// The comparison as JSON.
-    pub(crate) fn to_json(&self) -> Value {
+    pub fn to_json(&self) -> Value {
         let comparison = |comparison: &Comparison| {
             let mut entry = json!({
                 "against": comparison.against.word(), "quantity": comparison.quantity,
@@ -162,36 +162,30 @@ impl Thorough {
             }
         }
         if !left.is_empty() {
-            let nothing = || "nothing".to_owned();
-            let compared = Some(compared.join(", ")).filter(|all| !all.is_empty());
+            let compared = match &compared[..] {
+                [] => "nothing".to_owned(),
+                all => all.join(", "),
+            };
             let _ = write!(
                 text,
-                "\n  the time limit of {} s was exceeded\n  compared and equal: {}\n  not compared: {}\n  \
+                "\n  the time limit of {} s was exceeded\n  compared and equal: {compared}\n  not compared: {}\n  \
                  allow more time",
                 self.limit.as_secs_f64(),
-                compared.unwrap_or_else(nothing),
                 left.join(", ")
             );
         }
+        let mut verdict = "the formulations were not all compared";
+        if undefined {
+            verdict = "the formulations could not be compared";
+        }
         if differs {
-            text.push_str(
-                "\n  all formulations must give the same motion, so at least one is derived wrongly: \
-                do not use these equations\n  the mistake is in appell, not in the spec; please report it together \
-                 with the spec",
-            );
+            verdict = "the formulations disagree";
+            text += "\n  all formulations must give the same motion, so at least one is derived wrongly: do not use these \
+                equations\n  the mistake is in appell, not in the spec; please report it together with the spec";
         }
         if undefined {
-            text.push_str(
-                "\n  declare a `range` for the coordinates, inside which all expressions are defined",
-            );
+            text += "\n  declare a `range` for the coordinates, inside which all expressions are defined";
         }
-        let verdict = if differs {
-            "the formulations disagree"
-        } else if undefined {
-            "the formulations could not be compared"
-        } else {
-            "the formulations were not all compared"
-        };
         let file = &self.file;
         Some(Error::computation(format!("{file}: {verdict}{text}")))
     }

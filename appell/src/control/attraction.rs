@@ -31,53 +31,56 @@ pub struct Explored<'a> {
     duration: f64,
 }
 
-/// Simulates a law from every disturbance of a grid such as `theta=-20deg..20deg/8,r=-10cm..10cm/8`;
-/// `progress` is called with the number of completed motions and their total.
-pub fn explore<'a>(
-    model: &dyn Model,
-    setup: &Setup<'a>,
-    design: &Design,
-    asked: &str,
-    duration: f64,
-    progress: &(dyn Fn(usize, usize) + Sync),
-) -> Result<Explored<'a>, Error> {
-    if !(duration.is_finite() && duration > 0.0) {
-        let message = format!("{duration} is not a positive number of seconds");
-        return Err(Error::request(Field::Duration, message));
-    }
-    let Some(law) = &design.law else {
-        let message = "a region of attraction needs a law; give poles or weights";
-        return Err(Error::request(Field::Attraction, message));
-    };
-    let axes = axes(setup, design, asked)?;
-    let count: usize = axes.iter().map(|axis| axis.values.len()).product();
-    if count > MOST {
-        let message = format!("{count} motions are too many; at most {MOST} are possible");
-        return Err(Error::request(Field::Attraction, message));
-    }
-    let settled = |motion: &Trajectory| {
-        design.outputs.iter().all(|&state| {
-            let column = motion
-                .column(&setup.info.states[state].name)
-                .unwrap_or_default();
-            has_settled(motion.times(), &column, |t| design.desired(state, t))
+impl crate::Model {
+    /// Which motions settle under a law, from a grid of disturbances of one or two states such as
+    /// `theta=-20deg..20deg/8,r=-10cm..10cm/8`, each simulated for `duration` seconds; `progress` is called
+    /// with the number of completed motions and their total.
+    pub fn attraction(
+        &self,
+        design: &Design,
+        grid: &str,
+        duration: f64,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Explored<'_>, Error> {
+        if !(duration.is_finite() && duration > 0.0) {
+            let message = format!("{duration} is not a positive number of seconds");
+            return Err(Error::request(Field::Duration, message));
+        }
+        let Some(law) = &design.law else {
+            let message = "a region of attraction needs a law; give poles or weights";
+            return Err(Error::request(Field::Attraction, message));
+        };
+        let (model, setup) = (self.equations(), self.setup()?);
+        let axes = axes(&setup, design, grid)?;
+        let count: usize = axes.iter().map(|axis| axis.values.len()).product();
+        if count > MOST {
+            let message = format!("{count} motions are too many; at most {MOST} are possible");
+            return Err(Error::request(Field::Attraction, message));
+        }
+        let settled = |motion: &Trajectory| {
+            design.outputs.iter().all(|&state| {
+                let column = motion
+                    .column(&setup.info.states[state].name)
+                    .unwrap_or_default();
+                has_settled(motion.times(), &column, |t| design.desired(state, t))
+            })
+        };
+        let region = Region {
+            model,
+            parameters: &design.p,
+            state: &design.x,
+            inputs: &|| closed(model, design, law, duration),
+            duration,
+            axes,
+            settled: &settled,
+        };
+        let fates = region.explore(&|done| progress(done, count));
+        Ok(Explored {
+            info: setup.info,
+            fates: fates.map_err(Error::computation)?,
+            duration,
         })
-    };
-    let region = Region {
-        model,
-        parameters: &design.p,
-        state: &design.x,
-        inputs: &|| closed(model, design, law, duration),
-        duration,
-        axes,
-        settled: &settled,
-    };
-    let fates = region.explore(&|done| progress(done, count));
-    Ok(Explored {
-        info: setup.info,
-        fates: fates.map_err(Error::computation)?,
-        duration,
-    })
+    }
 }
 
 /// Whether a state ends near its desired value, compared with its largest deviation.
@@ -206,7 +209,7 @@ impl Explored<'_> {
     }
 
     /// The results as JSON, in SI.
-    pub(crate) fn json(&self) -> Value {
+    pub fn to_json(&self) -> Value {
         let axes = self.fates.axes.iter().zip(&self.fates.centre);
         let axes = axes.map(|(axis, centre)| {
             json!({
@@ -268,19 +271,14 @@ impl Explored<'_> {
 mod tests {
     use super::*;
 
-    const TIMES: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
-
     #[test]
-    fn an_advancing_output_settles_on_its_motion() {
+    fn an_output_settles_on_its_motion_or_its_value() {
+        let times = [0.0, 1.0, 2.0, 3.0];
         let advancing = |t: f64| 2.0 + 5.0 * t;
-        assert!(has_settled(&TIMES, &[2.5, 7.2, 12.1, 17.001], advancing));
-        assert!(!has_settled(&TIMES, &[2.5, 2.0, 2.0, 2.0], advancing));
-    }
-
-    #[test]
-    fn a_constant_output_settles_on_its_value() {
+        assert!(has_settled(&times, &[2.5, 7.2, 12.1, 17.001], advancing));
+        assert!(!has_settled(&times, &[2.5, 2.0, 2.0, 2.0], advancing));
         let constant = |_: f64| 1.0;
-        assert!(has_settled(&TIMES, &[2.0, 1.5, 1.1, 1.01], constant));
-        assert!(!has_settled(&TIMES, &[2.0, 1.5, 1.1, 1.1], constant));
+        assert!(has_settled(&times, &[2.0, 1.5, 1.1, 1.01], constant));
+        assert!(!has_settled(&times, &[2.0, 1.5, 1.1, 1.1], constant));
     }
 }

@@ -1,15 +1,16 @@
 //! Controllability about a steady motion, and gains.
 
 use appell_analysis::control::controllability::Controllability;
-use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
-use appell_analysis::control::reduction::{Subsystem, independent_states, reduce};
+use appell_analysis::control::operating_point::{
+    MotionEquations, OperatingPoint, OperatingPointError,
+};
+use appell_analysis::control::reduction::{ReductionError, Subsystem, independent_states, reduce};
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::{lqr, placement};
 use appell_analysis::{Point, Structure};
 use appell_runtime::model::Model;
 use nalgebra::{Complex, DMatrix};
 
-use super::errors::{DesignError, OperatingPointError, ReductionError};
 use super::parse::GivenInputs;
 use super::remedies;
 use crate::setup::Setup;
@@ -128,7 +129,7 @@ pub fn design(
     point.assemble().map_err(unsteady)?;
     point.hold(&open).map_err(unsteady)?;
     let equations = point.equations(&request.inputs).map_err(unsteady)?;
-    let controllability = Controllability::of(&equations.system).map_err(DesignError::from)?;
+    let controllability = Controllability::of(&equations.system).map_err(Error::computation)?;
     let at = place(model, &point);
     let rates = at.rates(model);
     let outputs = match &request.outputs[..] {
@@ -137,15 +138,13 @@ pub fn design(
     };
     if let Some(&varying) = outputs.iter().find(|at| equations.varying.contains(at)) {
         let advancing = advancing(model, &at, &rates).map(unsteady);
-        let error =
-            advancing.map_or_else(|| varies(setup, &equations, varying, request), Error::from);
-        return Err(error);
+        return Err(advancing.unwrap_or_else(|| varies(setup, &equations, varying, request)));
     }
     if let Some(&turning) = outputs.iter().find(|at| equations.turning.contains(at)) {
         return Err(turns(setup, &equations, turning));
     }
     let subsystem = reduce(&equations.system, &outputs)
-        .map_err(|error| remedies::reduction(error, &equations, setup))?;
+        .map_err(|error| remedies::reduction(&error, &equations, setup))?;
     let law = law(&subsystem, request)?;
     Ok(Design {
         x: point.x,
@@ -262,7 +261,7 @@ fn places(
 fn law(subsystem: &Subsystem, request: &Goal) -> Result<Option<DesignedGains>, Error> {
     let (system, sampling) = (&subsystem.system, request.sampling);
     let (n, m) = (system.order(), system.inputs());
-    let law = match &request.method {
+    let (gain, poles, residual, condition) = match &request.method {
         Method::None => return Ok(None),
         Method::Poles(poles) => {
             let poles = match poles[..] {
@@ -274,13 +273,8 @@ fn law(subsystem: &Subsystem, request: &Goal) -> Result<Option<DesignedGains>, E
                 Some(sampling) => sampling.place(system, &poles),
             };
             let placed = placed.map_err(remedies::placement)?;
-            DesignedGains {
-                gain: placed.gain,
-                poles: placed.poles,
-                sampling,
-                residual: placed.residual,
-                condition: Some(placed.condition),
-            }
+            let condition = Some(placed.condition);
+            (placed.gain, placed.poles, placed.residual, condition)
         }
         Method::Weights { outputs, inputs } => {
             let (q, r) = (diagonal("Q", outputs, n)?, diagonal("R", inputs, m)?);
@@ -289,16 +283,16 @@ fn law(subsystem: &Subsystem, request: &Goal) -> Result<Option<DesignedGains>, E
                 Some(sampling) => sampling.regulate(system, &q, &r),
             };
             let regulator = regulator.map_err(remedies::riccati)?;
-            DesignedGains {
-                gain: regulator.gain,
-                poles: regulator.poles,
-                sampling,
-                residual: regulator.residual,
-                condition: None,
-            }
+            (regulator.gain, regulator.poles, regulator.residual, None)
         }
     };
-    Ok(Some(law))
+    Ok(Some(DesignedGains {
+        gain,
+        poles,
+        sampling,
+        residual,
+        condition,
+    }))
 }
 
 fn diagonal(name: &str, weights: &[f64], count: usize) -> Result<DMatrix<f64>, Error> {

@@ -6,7 +6,6 @@ use appell_runtime::model::Model;
 use nalgebra::Complex;
 
 use super::design::Method;
-use super::errors::DesignError;
 use crate::setup::{Assignment, Setup, unique, unknown};
 use crate::steady::{term, value_of};
 use crate::{Error, Field};
@@ -196,7 +195,7 @@ pub(crate) fn sampling(
     }
     let sampling = |period_ms: f64| Sampling::new(period_ms / 1e3, delay_ms.unwrap_or(0.0) / 1e3);
     let sampling = period_ms.map(sampling).transpose();
-    Ok(sampling.map_err(DesignError::from)?)
+    sampling.map_err(|error| Error::request(Field::Sampling, error.to_string()))
 }
 
 /// `FROM..TO` of `NAME=FROM..TO/STEPS`

@@ -1,24 +1,24 @@
 //! Remedies for a failed design, in the names of the mechanism.
 
-use appell_analysis::control::operating_point::MotionEquations;
+use appell_analysis::control::operating_point::{MotionEquations, OperatingPointError};
+use appell_analysis::control::placement::PlacementError;
+use appell_analysis::control::reduction::ReductionError;
+use appell_analysis::control::riccati::RiccatiError;
 use appell_report::text::number;
 use nalgebra::Complex;
 
-use super::errors::{
-    DesignError, OperatingPointError, PlacementError, ReductionError, RiccatiError,
-};
-use crate::field::Field;
 use crate::setup::Setup;
+use crate::{Error, Field};
 
 /// About the steady motion.
-pub(super) fn operating_point(error: OperatingPointError, setup: &Setup<'_>) -> DesignError {
+pub(super) fn operating_point(error: OperatingPointError, setup: &Setup<'_>) -> Error {
     let (state, rate) = match error {
         OperatingPointError::Unsteady { state, rate } => (state, rate),
         OperatingPointError::Inconsistent(nowhere) => {
             let message = nowhere.describe(setup.info);
-            return DesignError::request(Field::At, message, error);
+            return Error::request(Field::At, message);
         }
-        _ => return DesignError::computation(error),
+        _ => return Error::computation(error),
     };
     let quantity = &setup.info.states[state];
     let message = format!(
@@ -27,17 +27,17 @@ pub(super) fn operating_point(error: OperatingPointError, setup: &Setup<'_>) -> 
         number(quantity.to_unit(rate)),
         quantity.unit
     );
-    DesignError::request(Field::At, message, error)
+    Error::request(Field::At, message)
 }
 
 /// About the outputs.
 pub(super) fn reduction(
-    error: ReductionError,
+    error: &ReductionError,
     equations: &MotionEquations,
     setup: &Setup<'_>,
-) -> DesignError {
+) -> Error {
     let name = |place: &usize| setup.info.states[equations.states[*place]].name.as_ref();
-    let message = match &error {
+    let message = match error {
         ReductionError::Unmoved => {
             "the inputs affect none of the outputs at this operating point".to_owned()
         }
@@ -64,14 +64,14 @@ pub(super) fn reduction(
             )
         }
     };
-    DesignError::request(Field::Outputs, message, error)
+    Error::request(Field::Outputs, message)
 }
 
 /// About poles.
-pub(super) fn placement(error: PlacementError) -> DesignError {
+pub(super) fn placement(error: PlacementError) -> Error {
     let text = pole_text;
     let message = match &error {
-        PlacementError::Spectrum(_) => return DesignError::computation(error),
+        PlacementError::Spectrum(_) => return Error::computation(error),
         PlacementError::Count { order, .. } => {
             format!("{error}; write {order} poles for the {order} outputs, or a single one for all")
         }
@@ -95,20 +95,20 @@ pub(super) fn placement(error: PlacementError) -> DesignError {
         PlacementError::DependentInputs { .. } => format!("{error}; use fewer inputs"),
         PlacementError::Defective => format!("{error}; spread the poles"),
     };
-    DesignError::request(Field::Poles, message, error)
+    Error::request(Field::Poles, message)
 }
 
 /// About weights.
-pub(super) fn riccati(error: RiccatiError) -> DesignError {
+pub(super) fn riccati(error: RiccatiError) -> Error {
     let message = match &error {
         RiccatiError::InputWeight => "every weight in R must be positive".to_owned(),
         RiccatiError::StateWeight { .. } => "no weight in Q may be negative".to_owned(),
         RiccatiError::NoStabilisingSolution => {
             format!("{error}; give all outputs a positive weight")
         }
-        _ => return DesignError::computation(error),
+        _ => return Error::computation(error),
     };
-    DesignError::request(Field::Weights, message, error)
+    Error::request(Field::Weights, message)
 }
 
 /// A complex number in the format of a request.

@@ -4,7 +4,7 @@ use appell_runtime::model::{At, Model};
 
 use super::design::{self, Design, Goal, Method};
 use super::parse;
-use crate::setup::{Assignment, Setup};
+use crate::setup::{Assignment, Setup, assigning};
 use crate::{Error, Field};
 
 /// A request for a controller. Without poles or weights no law is designed, and only controllability is
@@ -32,18 +32,11 @@ pub struct Request {
 }
 
 impl Request {
-    /// Sets a parameter.
-    #[must_use]
-    pub fn set(mut self, name: &str, value: impl ToString) -> Self {
-        self.parameters.push(Assignment::new(name, value));
-        self
-    }
-
-    /// Prescribes a quantity on the steady motion.
-    #[must_use]
-    pub fn at(mut self, name: &str, value: impl ToString) -> Self {
-        self.at.push(Assignment::new(name, value));
-        self
+    assigning! {
+        /// Sets a parameter.
+        set to parameters;
+        /// Prescribes a quantity on the steady motion.
+        at to at;
     }
 
     /// Chooses the inputs that the law may use.

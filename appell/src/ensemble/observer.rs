@@ -244,27 +244,17 @@ impl<'a> Keeper<'a> {
     pub(super) fn finish(self, layout: &Layout, t: f64) -> &'a mut [f64] {
         for followed in &self.followed {
             let column = layout.first[followed.keep];
-            if followed.is_undefined {
-                self.row[column] = f64::NAN;
-                if followed.kept != Kept::Mean {
-                    self.row[column + 1] = f64::NAN;
-                }
-                continue;
-            }
-            let sign = match followed.kept {
-                Kept::Min => -1.0,
-                _ => 1.0,
+            let duration = t - self.start;
+            let [value, when] = match followed.kept {
+                _ if followed.is_undefined => [f64::NAN; 2],
+                Kept::Mean if duration > 0.0 => [followed.best / duration, t],
+                Kept::Mean => [followed.first, t],
+                Kept::Min => [-followed.best, followed.when],
+                _ => [followed.best, followed.when],
             };
-            if followed.kept == Kept::Mean {
-                let duration = t - self.start;
-                self.row[column] = if duration > 0.0 {
-                    followed.best / duration
-                } else {
-                    followed.first
-                };
-            } else {
-                self.row[column] = sign * followed.best;
-                self.row[column + 1] = followed.when;
+            self.row[column] = value;
+            if followed.kept != Kept::Mean {
+                self.row[column + 1] = when;
             }
         }
         self.row

@@ -7,7 +7,7 @@ use appell_ensemble::study::{Keep, Kept, Text};
 use appell_spec::compose::Composition;
 use appell_spec::expr::{BinaryOp, Expr, ExprKind, Function, Quantity as Named, Span};
 use appell_spec::units;
-use appell_spec::{Code, Diagnostic, Reading as Read, Severity};
+use appell_spec::{Code, Diagnostic, Mechanism, Reading as Read, Severity};
 
 use super::reading::Reading;
 use crate::engine::Engine;
@@ -23,12 +23,6 @@ pub(super) enum Quantity {
     Output(usize, bool),
 }
 
-/// A quantity defined by the study.
-pub(super) struct Own<'s> {
-    pub(super) name: &'s Text,
-    pub(super) unit: &'s Text,
-}
-
 /// The model of a spec with the quantities of a study.
 pub(super) struct Extended {
     pub(super) model: Arc<Model>,
@@ -40,14 +34,18 @@ pub(super) struct Extended {
 pub(super) fn extended(
     reading: &mut Reading<'_>,
     source: &Source,
-    own: &[Own<'_>],
 ) -> Result<Option<Extended>, Error> {
     let base = appell_spec::load(&source.file, &source.text)?.mechanism;
     let mut composition = Composition::new(&source.text).map_err(Error::computation)?;
     let before = reading.findings.len();
-    for Own { name, unit } in own {
+    // Quantities that the study defines are those with a unit.
+    let study = reading.study;
+    let varied = study.vary.iter().map(|vary| (&vary.name, &vary.unit));
+    let noises = study.noise.iter().map(|noise| (&noise.name, &noise.unit));
+    for (name, unit) in varied.chain(noises) {
+        let Some(unit) = unit else { continue };
         if let Err(error) = units::parse(&unit.text) {
-            reading.tell(Code::UnknownUnit, error.to_string(), *unit, "");
+            reading.tell(Code::UnknownUnit, error.to_string(), unit, "");
             continue;
         }
         let fragment = format!(
@@ -60,29 +58,11 @@ pub(super) fn extended(
             composition.add(&fragment).map_err(Error::computation)?;
         }
     }
-    let states = |name: &str| {
-        let speeds = base.pseudo_velocities.iter().map(|s| &s.label.name);
-        let mut all = speeds.chain(base.coordinates.iter().map(|c| &c.label.name));
-        all.position(|own| own == name).map(Quantity::State)
-    };
-    let inputs = |name: &str| {
-        let mut all = base.inputs.iter();
-        all.position(|own| own.label.name == name)
-            .map(Quantity::Input)
-    };
-    let outputs = |name: &str| {
-        let mut all = base.outputs.iter();
-        all.position(|own| own.label.name == name)
-            .map(|place| Quantity::Output(place, true))
-    };
     let mut kept = Vec::new();
     let mut count = base.outputs.len();
     for (index, keep) in reading.study.keep.iter().enumerate() {
         let text = keep.of.text.trim();
-        let known = states(text)
-            .or_else(|| inputs(text))
-            .or_else(|| outputs(text));
-        if let (Some(known), false) = (known, matches!(keep.kept, Kept::When { .. })) {
+        if let (Some(known), false) = (named(&base, text), matches!(keep.kept, Kept::When { .. })) {
             kept.push(known);
             continue;
         }
@@ -123,6 +103,20 @@ pub(super) fn extended(
         model: Arc::new(model),
         kept: Arc::new(kept),
     }))
+}
+
+/// A quantity of a mechanism.
+fn named(mechanism: &Mechanism, name: &str) -> Option<Quantity> {
+    let speeds = mechanism.pseudo_velocities.iter().map(|w| &w.label);
+    let states = speeds.chain(mechanism.coordinates.iter().map(|q| &q.label));
+    let states = (0..).map(Quantity::State).zip(states);
+    let inputs = mechanism.inputs.iter().map(|u| &u.label);
+    let inputs = (0..).map(Quantity::Input).zip(inputs);
+    let outputs = mechanism.outputs.iter().map(|y| &y.label);
+    let outputs = (0..).map(|y| Quantity::Output(y, true)).zip(outputs);
+    let mut all = states.chain(inputs).chain(outputs);
+    all.find(|(_, label)| label.name == name)
+        .map(|(quantity, _)| quantity)
 }
 
 /// Whether an expression may vary faster than its operands.

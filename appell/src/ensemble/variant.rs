@@ -39,12 +39,6 @@ pub(super) struct Variant {
     pub(super) kept: Arc<Vec<Quantity>>,
 }
 
-/// Common parts of several variants of a study.
-pub(super) struct Common<'a> {
-    pub(super) folder: &'a Path,
-    pub(super) targets: &'a [Target],
-}
-
 /// The setup of a spec with the nominal values of a study.
 pub(super) fn nominal<'m>(
     reading: &mut Reading<'_>,
@@ -99,7 +93,8 @@ pub(super) fn variant(
     reading: &mut Reading<'_>,
     extended: &Extended,
     law: Option<&Text>,
-    common: &Common<'_>,
+    folder: &Path,
+    targets: &[Target],
 ) -> Result<Option<Variant>, Error> {
     let model = &extended.model;
     let (mut setup, derived) = nominal(reading, model)?;
@@ -107,7 +102,7 @@ pub(super) fn variant(
     let mut plan = Plan::new(&setup);
     let mut start = Vec::new();
     for file in study.motion.feedback.iter().chain(law) {
-        let Some(path) = reading.file(common.folder, file) else {
+        let Some(path) = reading.file(folder, file) else {
             continue;
         };
         let law = feedback::read(&path, &setup)?;
@@ -162,7 +157,7 @@ pub(super) fn variant(
         start,
         parameters: setup.parameters.clone(),
         initial: setup.initial.clone(),
-        targets: common.targets.to_vec(),
+        targets: targets.to_vec(),
         noises,
         kept: Arc::clone(&extended.kept),
     }))

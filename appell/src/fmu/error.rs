@@ -46,10 +46,3 @@ pub enum FmuError {
     #[error("cannot pack the FMU: {0}")]
     Package(#[from] zip::result::ZipError),
 }
-
-impl FmuError {
-    /// Whether sources alone are possible all the same.
-    pub(crate) fn is_about_machine_code(&self) -> bool {
-        !matches!(self, Self::Package(_))
-    }
-}

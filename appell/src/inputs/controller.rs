@@ -19,7 +19,7 @@ use crate::inputs::closed_loop::{ClosedLoop, Onto, Outside};
 use crate::inputs::feedback::Feedback;
 use crate::inputs::law::{Law, Moment, Stage};
 use crate::inputs::switching::InputSwitches;
-use crate::inputs::tabulated::Table;
+use crate::inputs::tabulated::{Remarks, Table};
 use crate::motion::Driven;
 use crate::setup::{Assignment, Setup, expression};
 use crate::{Error, Field};
@@ -71,7 +71,9 @@ pub struct Plan {
     exprs: Vec<Lowered>,
     terms: Vec<Term>,
     laws: Vec<PlacedLaw>,
-    pub(crate) recorded: Option<Table>,
+    recorded: Option<TabulatedInputs>,
+    /// Remarks on a recording.
+    pub(crate) remarks: Remarks,
     driven: Vec<DrivenInputs>,
     switching_times: Vec<f64>,
     /// Inputs set by an expression or a recording.
@@ -87,6 +89,7 @@ impl Plan {
             terms: Vec::new(),
             laws: Vec::new(),
             recorded: None,
+            remarks: Remarks::default(),
             driven: Vec::new(),
             switching_times: Vec::new(),
             set: Vec::new(),
@@ -141,7 +144,7 @@ impl Plan {
             self.take(Field::Recorded, input, setup)?;
         }
         self.switching_times.extend(table.values.switching_times());
-        self.recorded = Some(table);
+        (self.recorded, self.remarks) = (Some(table.values), table.remarks);
         Ok(())
     }
 
@@ -204,7 +207,7 @@ impl Plan {
             function,
             terms: self.terms,
             laws: self.laws,
-            recorded: self.recorded.map(|table| table.values),
+            recorded: self.recorded,
             driven: self.driven,
             switching_times: self.switching_times,
             switches,

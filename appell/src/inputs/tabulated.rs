@@ -20,20 +20,29 @@ use crate::setup::{Setup, unknown};
 use crate::source::Source;
 use crate::{Error, Field, files, recording};
 
+/// Remarks on the inputs of a motion.
+#[derive(Debug, Clone, Default)]
+pub struct Remarks {
+    /// Whether neither inputs nor feedback drive the mechanism.
+    pub undriven: bool,
+    /// The time in s from which the last values of recorded inputs are held, if it comes before the end.
+    pub held_from: Option<f64>,
+    /// A remark on recorded inputs that are held by default.
+    pub smooth: Option<String>,
+    /// Coordinates in the first row of a recorded run whose inputs drive the motion, if it begins elsewhere.
+    pub begins: Option<String>,
+    /// What differs in that run from the other runs, and so from the model, a sentence for each parameter.
+    pub differs: Vec<String>,
+}
+
 /// Inputs of a file.
 pub struct Table {
     /// Values over time; inputs that are not given are zero.
     pub values: TabulatedInputs,
     /// Indices of those that are given.
     pub given: Vec<usize>,
-    /// The last time in s, after which the last values are held.
-    pub until: f64,
-    /// Held inputs that change smoothly, with the relative error of holding them; only if the interpolation is not stated.
-    pub smooth: Vec<(String, f64)>,
-    /// Coordinates as a run of a data set measures them in its first row, where the motion begins elsewhere.
-    pub begins: Option<String>,
-    /// What differs in that run, which the motion does not know.
-    pub differs: Vec<String>,
+    /// What there is to say about them; the last values are held from the last time on.
+    pub remarks: Remarks,
 }
 
 /// The inputs of a CSV file, for a motion until a time in s.
@@ -77,8 +86,13 @@ pub fn read(
     let smooth = columns.inputs.iter().filter(|_| !is_stated);
     let smooth = smooth.filter_map(|column| {
         let late = Smooth::of([column.values.as_slice()].into_iter())?.held;
-        Some((names[column.input].name.to_string(), late))
+        Some(format!(
+            "`{}` by {:.2} %",
+            names[column.input].name,
+            100.0 * late
+        ))
     });
+    let smooth = are_smooth(&smooth.collect::<Vec<_>>());
     let mut signals = Vec::new();
     for (input, quantity) in names.iter().enumerate() {
         let column = columns.inputs.iter().find(|column| column.input == input);
@@ -92,19 +106,28 @@ pub fn read(
             values: values.into(),
             interpolation,
         };
-        let signal = Signal::new(&table).map_err(|source| Error::Table {
-            file: file.clone().into_owned(),
-            source,
-        })?;
+        let signal = Signal::new(&table).map_err(|error| Error::data(&file, error.to_string()))?;
         signals.push(signal);
     }
     Ok(Table {
         values: TabulatedInputs::new(signals),
         given: columns.inputs.iter().map(|column| column.input).collect(),
-        until: to,
-        smooth: smooth.collect(),
-        begins: columns.begins,
-        differs: columns.differs,
+        remarks: Remarks {
+            held_from: Some(to),
+            smooth,
+            ..columns.remarks
+        },
+    })
+}
+
+/// A remark on inputs that seem to be sampled from a continuous signal, each with the relative error of holding it.
+fn are_smooth(inputs: &[String]) -> Option<String> {
+    (!inputs.is_empty()).then(|| {
+        format!(
+            "inputs change smoothly from row to row, and each row is held to the next: if they were sampled from a \
+             continuous signal, they act half a row late ({} of their size); write `linear` or `hold`",
+            inputs.join(", ")
+        )
     })
 }
 
@@ -122,7 +145,7 @@ fn described(text: &str) -> Option<(&str, &str)> {
 fn recorded(description: &str, run: &str, name: &str, setup: &Setup<'_>) -> Result<Columns, Error> {
     // The spec may be in no file; a description of a robot has the names of its file.
     let text = setup.robot.map_or(setup.spec, |robot| &robot.text);
-    let mut set = recording::read_of(&Source::of(name, text), &[description.into()])?;
+    let mut set = recording::read_with(&[description.into()], Some(&Source::of(name, text)))?;
     recording::check_units(&set)?;
     let Some(place) = set.runs.iter().position(|own| own.name == run) else {
         let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();
@@ -134,8 +157,11 @@ fn recorded(description: &str, run: &str, name: &str, setup: &Setup<'_>) -> Resu
         let message = format!("{missing}; append one of {}", names.join(", "));
         return Err(Error::request(Field::Recorded, message));
     };
-    let begins = begins(&set, &set.runs[place], setup);
-    let differs = differences(&set, &set.runs[place]);
+    let remarks = Remarks {
+        begins: begins(&set, &set.runs[place], setup),
+        differs: differences(&set, &set.runs[place]),
+        ..Remarks::default()
+    };
     let run = set.runs.swap_remove(place);
     let mut inputs: Vec<Column> = Vec::new();
     for (channel, values) in set.channels.iter().zip(run.values) {
@@ -161,8 +187,7 @@ fn recorded(description: &str, run: &str, name: &str, setup: &Setup<'_>) -> Resu
     Ok(Columns {
         times,
         inputs,
-        begins,
-        differs,
+        remarks,
     })
 }
 
@@ -186,8 +211,7 @@ fn tabulated(
 struct Columns {
     times: Vec<f64>,
     inputs: Vec<Column>,
-    begins: Option<String>,
-    differs: Vec<String>,
+    remarks: Remarks,
 }
 
 /// `hip = 0.347 rad, knee = -0.783 rad`: measured coordinates in the first row of a run, if the motion begins elsewhere.
@@ -250,8 +274,7 @@ impl<R: BufRead> Reader<R> {
         let mut columns = Columns {
             times: Vec::new(),
             inputs,
-            begins: None,
-            differs: Vec::new(),
+            remarks: Remarks::default(),
         };
         let Some(time) = time else {
             let help = "name the column of times in seconds `t`";

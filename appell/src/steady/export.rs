@@ -4,9 +4,9 @@ use std::io::{self, Write};
 
 use appell_analysis::{Branch, Change, End, Kind, Point, Stability, Term, Verdict, circle};
 use appell_runtime::contact::ContactForces;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use crate::json::named;
+use crate::json::{named, object};
 
 use super::{Answer, Resolved};
 
@@ -121,47 +121,38 @@ fn point(asked: &Resolved<'_>, point: &Point, stability: &Stability) -> Value {
     let model = asked.problem.model();
     let info = model.info();
     let uniform = asked.problem.structure().uniform.iter();
-    let rates: Map<String, Value> = uniform
-        .map(|&state| Term::Rate(state))
-        .map(|rate| (rate.name(info), json!(rate.value(model, point))))
-        .collect();
-    let paths: Map<String, Value> = asked
-        .places()
-        .into_iter()
-        .map(|(place, name)| {
-            let path = circle(model, point, place);
-            let told = json!({
-                "radius": path.radius,
-                "centre": path.centre,
-                "turn_rate": path.turn_rate,
-                "speed": path.speed,
-            });
-            (name, told)
-        })
-        .collect();
+    let rates = uniform.map(|&state| {
+        let rate = Term::Rate(state);
+        (rate.name(info), json!(rate.value(model, point)))
+    });
+    let paths = asked.places().into_iter().map(|(place, name)| {
+        let path = circle(model, point, place);
+        let told = json!({
+            "radius": path.radius,
+            "centre": path.centre,
+            "turn_rate": path.turn_rate,
+            "speed": path.speed,
+        });
+        (name, told)
+    });
     let mut forces = ContactForces::new();
-    let forces = forces.at(model, point.at());
-    let contacts: Map<String, Value> = info
-        .contacts
-        .iter()
-        .zip(forces)
-        .map(|(contact, force)| {
-            let told = json!({
-                "normal_force": force.normal,
-                "tangential_force": force.tangential,
-                "friction_demand": force.demand(),
-            });
-            (contact.name.to_string(), told)
-        })
-        .collect();
+    let contacts = info.contacts.iter().zip(forces.at(model, point.at()));
+    let contacts = contacts.map(|(contact, force)| {
+        let told = json!({
+            "normal_force": force.normal,
+            "tangential_force": force.tangential,
+            "friction_demand": force.demand(),
+        });
+        (&contact.name, told)
+    });
     json!({
         "state": named(&info.states, &point.x),
         "inputs": named(&info.inputs, &point.u),
         "parameters": named(&info.parameters, &point.p),
-        "rates": rates,
+        "rates": object(rates),
         "outputs": named(&info.outputs, &point.outputs(model)),
-        "paths": paths,
-        "contacts": contacts,
+        "paths": object(paths),
+        "contacts": object(contacts),
         "eigenvalues": stability.eigenvalues().iter().map(|z| [z.re, z.im]).collect::<Vec<_>>(),
         "zeros": stability.zeros,
         "family": stability.family,

@@ -5,8 +5,8 @@ use std::str::FromStr;
 use appell_analysis::{Point, Requirement, SteadyProblem, Term};
 use appell_runtime::model::Model;
 
-use super::{Resolved, term, value_in_range, value_of};
-use crate::setup::{Assignment, Setup, unique};
+use super::{Resolved, term, value_of};
+use crate::setup::{Assignment, Setup, assigning, unique};
 use crate::{Error, Field};
 
 /// Default number of starting points of the search.
@@ -88,25 +88,13 @@ impl Default for Question {
 }
 
 impl Question {
-    /// Sets a parameter.
-    #[must_use]
-    pub fn set(mut self, name: &str, value: impl ToString) -> Self {
-        self.parameters.push(Assignment::new(name, value));
-        self
-    }
-
-    /// Requires feasible motions to have at least this value of a quantity.
-    #[must_use]
-    pub fn require(mut self, name: &str, value: impl ToString) -> Self {
-        self.require.push(Assignment::new(name, value));
-        self
-    }
-
-    /// Prescribes the value of a quantity.
-    #[must_use]
-    pub fn fix(mut self, name: &str, value: impl ToString) -> Self {
-        self.fix.push(Assignment::new(name, value));
-        self
+    assigning! {
+        /// Sets a parameter.
+        set to parameters;
+        /// Requires feasible motions to have at least this value of a quantity.
+        require to require;
+        /// Prescribes the value of a quantity.
+        fix to fix;
     }
 
     /// Solves for an input or parameter.
@@ -150,12 +138,12 @@ impl Question {
         unique(&self.fix, Field::Fix)?;
         for fixed in &self.fix {
             let term = term(setup, Field::Fix, &fixed.name)?;
-            let value = if self.ignore_ranges {
-                value_of(setup, term, Field::Fix, fixed)
-            } else {
-                value_in_range(setup, term, Field::Fix, fixed)
-            };
-            problem.fix(term, value?)?;
+            let value = value_of(setup, term, Field::Fix, fixed)?;
+            if let (Term::State(state), false) = (term, self.ignore_ranges) {
+                let within = setup.state_within(state, value);
+                within.map_err(|message| Error::request(Field::Fix, message))?;
+            }
+            problem.fix(term, value)?;
         }
         let along = self.along.as_ref();
         let along = along.map(|span| span.resolve(setup, Field::Along));

@@ -48,9 +48,24 @@ pub(crate) struct Arguments {
     pub(crate) no_cache: bool,
 }
 
-/// The commands.
-#[derive(Debug, clap::Subcommand)]
-pub(crate) enum Command {
+macro_rules! commands {
+    ($($name:ident($command:ty),)*) => {
+        /// The commands.
+        #[derive(Debug, clap::Subcommand)]
+        pub(crate) enum Command {
+            $($name($command),)*
+        }
+
+        /// Runs a command.
+        pub(crate) fn run(command: Command) -> Result<(), Error> {
+            match command {
+                $(Command::$name(command) => command.run(),)*
+            }
+        }
+    };
+}
+
+commands! {
     List(list::List),
     New(new::New),
     Import(import::Import),
@@ -81,40 +96,4 @@ pub(crate) enum Command {
     Cache(cache::Cache),
     Completions(completions::Completions),
     Man(man::Man),
-}
-
-/// Runs a command.
-pub(crate) fn run(command: Command) -> Result<(), Error> {
-    match command {
-        Command::List(command) => command.run(),
-        Command::New(command) => command.run(),
-        Command::Import(command) => command.run(),
-        Command::Check(command) => command.run(),
-        Command::Derive(command) => command.run(),
-        Command::Draw(command) => command.run(),
-        Command::Export(command) => command.run(),
-        Command::Evaluate(command) => command.run(),
-        Command::Simulate(command) => command.run(),
-        Command::Ensemble(command) => command.run(),
-        Command::Control(command) => command.run(),
-        Command::Sample(command) => command.run(),
-        Command::Recording(command) => command.run(),
-        Command::Identify(command) => command.run(),
-        Command::Inverse(command) => command.run(),
-        Command::Base(command) => command.run(),
-        Command::Motion(command) => command.run(),
-        Command::Diagnose(command) => command.run(),
-        Command::Effects(command) => command.run(),
-        Command::Apply(command) => command.run(),
-        Command::Steady(command) => command.run(),
-        Command::Stability(command) => command.run(),
-        Command::Demo(command) => command.run(),
-        Command::Reproduce(command) => command.run(),
-        Command::Schema(command) => command.run(),
-        Command::Watch(command) => command.run(),
-        Command::Lsp(lsp::Lsp {}) => lsp::run(),
-        Command::Cache(command) => command.run(),
-        Command::Completions(command) => command.run(),
-        Command::Man(command) => command.run(),
-    }
 }

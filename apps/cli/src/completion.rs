@@ -25,29 +25,22 @@ fn with_models(command: Command) -> Command {
     let command = command.mut_subcommands(with_models);
     let is_import = command.get_name() == "import";
     let is_effects = command.get_name() == "effects";
-    command.mut_args(|argument| match argument.get_id().as_str() {
-        "model" | "models" => argument.add(ArgValueCompleter::new(models)),
-        "set" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
-            names(typed, |info| own(&info.parameters))
-        })),
-        "initial" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
-            names(typed, |info| own(&info.states))
-        })),
-        "input" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
-            names(typed, |info| own(&info.inputs[..info.declared_inputs]))
-        })),
-        // `--without` has different values in different commands.
-        "without" if is_import => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
-            listed(typed, Without::ALL.map(Without::word))
-        })),
-        "name" if is_effects => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
-            let library = appell::effects::library().unwrap_or_default();
-            beginning(typed, library.iter().map(|effect| effect.name.as_str()))
-        })),
-        "fix" | "at" | "along" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
-            names(typed, Term::names)
-        })),
-        _ => argument,
+    command.mut_args(|argument| {
+        let complete: fn(&OsStr) -> Vec<CompletionCandidate> = match argument.get_id().as_str() {
+            "model" | "models" => models,
+            "set" => |typed| names(typed, |info| own(&info.parameters)),
+            "initial" => |typed| names(typed, |info| own(&info.states)),
+            "input" => |typed| names(typed, |info| own(&info.inputs[..info.declared_inputs])),
+            // `--without` has different values in different commands.
+            "without" if is_import => |typed| listed(typed, Without::ALL.map(Without::word)),
+            "name" if is_effects => |typed| {
+                let library = appell::effects::library().unwrap_or_default();
+                beginning(typed, library.iter().map(|effect| effect.name.as_str()))
+            },
+            "fix" | "at" | "along" => |typed| names(typed, Term::names),
+            _ => return argument,
+        };
+        argument.add(ArgValueCompleter::new(complete))
     })
 }
 

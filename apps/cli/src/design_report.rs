@@ -8,6 +8,7 @@ use nalgebra::Complex;
 use appell::control::Schedule;
 use appell::control::design::{Design, DesignedGains};
 use appell::control::remedies::pole_text;
+use appell_report::row;
 use appell_report::text::{number, table};
 
 /// Real part in 1/s above which a mode is unstable; rounding may move a multiple zero this far.
@@ -43,8 +44,8 @@ fn motion(design: &Design, info: &ModelInfo) -> String {
 /// The controllable subspace, and the uncontrollable modes.
 fn reach(design: &Design, info: &ModelInfo) -> String {
     let controllability = &design.controllability;
-    let names = names(info, &design.equations.states);
-    let inputs = self::names_of(&info.inputs, &design.equations.inputs).join(", ");
+    let names = names(&info.states, &design.equations.states);
+    let inputs = self::names(&info.inputs, &design.equations.inputs).join(", ");
     let order = names.len();
     let mut text = format!(
         "{inputs}: controllable subspace of dimension {} of {order}\n",
@@ -81,7 +82,7 @@ fn reach(design: &Design, info: &ModelInfo) -> String {
 
 /// The subsystem of the outputs.
 fn equations(design: &Design, info: &ModelInfo) -> String {
-    let outputs = names(info, &design.outputs);
+    let outputs = names(&info.states, &design.outputs);
     let mut text = format!("outputs {}: a closed subsystem\n", outputs.join(", "));
     for (state, factors) in &design.subsystem.substituted {
         let state = &info.states[design.equations.states[*state]].name;
@@ -93,53 +94,38 @@ fn equations(design: &Design, info: &ModelInfo) -> String {
 /// Gains in the units of the spec, and the poles.
 fn gains(design: &Design, law: &DesignedGains, info: &ModelInfo) -> String {
     let (inputs, states) = (&design.equations.inputs, &design.outputs);
-    let mut rows = vec![vec![
-        "gain of".to_owned(),
-        "on".to_owned(),
-        String::new(),
-        "unit".to_owned(),
-    ]];
+    let mut rows = vec![row!["gain of", "on", "", "unit"]];
     for (row, &input) in inputs.iter().enumerate() {
         let input = &info.inputs[input];
         for column in 0..law.gain.ncols() {
-            let on = match states.get(column) {
-                Some(&state) => &info.states[state],
-                None => &info.inputs[inputs[(column - states.len()) % inputs.len()]],
-            };
-            let pending = if column < states.len() {
-                ""
-            } else {
-                ", pending"
-            };
-            rows.push(vec![
-                input.name.to_string(),
-                format!("{}{pending}", on.name),
-                number(law.gain[(row, column)] * on.scale / input.scale),
-                gain_unit(input, on),
-            ]);
+            let (on, pending) = (
+                fed_back(design, column, info),
+                if column < states.len() {
+                    ""
+                } else {
+                    ", pending"
+                },
+            );
+            let gain = number(law.gain[(row, column)] * on.scale / input.scale);
+            let on_name = format!("{}{pending}", on.name);
+            rows.push(row![input.name, on_name, gain, gain_unit(input, on)]);
         }
     }
     let mut text = table(&rows, 2..3);
-    match law.sampling {
-        None => {
-            let poles: Vec<String> = law.poles.iter().map(|pole| pole_text(*pole)).collect();
-            let _ = writeln!(text, "closed-loop poles in 1/s: {}", poles.join(", "));
-        }
-        Some(sampling) => {
-            let poles: Vec<String> = law.poles.iter().map(|pole| pole_text(*pole)).collect();
-            let _ = writeln!(
-                text,
-                "poles of the sampled closed loop, z: {}",
-                poles.join(", ")
-            );
-            let poles = law
-                .poles
-                .iter()
-                .filter_map(|pole| sampling.continuous_pole(*pole));
-            let poles: Vec<String> = poles.map(pole_text).collect();
-            let _ = writeln!(text, "  ln(z)/T in 1/s: {}", poles.join(", "));
-        }
-    }
+    let listed = |poles: &mut dyn Iterator<Item = Complex<f64>>| {
+        let poles: Vec<String> = poles.map(pole_text).collect();
+        poles.join(", ")
+    };
+    let mut poles = law.poles.iter().copied();
+    let _ = match law.sampling {
+        None => writeln!(text, "closed-loop poles in 1/s: {}", listed(&mut poles)),
+        Some(sampling) => writeln!(
+            text,
+            "poles of the sampled closed loop, z: {}\n  ln(z)/T in 1/s: {}",
+            listed(&mut poles.clone()),
+            listed(&mut poles.filter_map(|pole| sampling.continuous_pole(pole)))
+        ),
+    };
     let growing = law.growing();
     if growing > 0 {
         let _ = writeln!(
@@ -167,6 +153,15 @@ fn gains(design: &Design, law: &DesignedGains, info: &ModelInfo) -> String {
         ),
     };
     text
+}
+
+/// What a column of the gains feeds back: an output, or an input that does not act yet.
+fn fed_back<'i>(design: &Design, column: usize, info: &'i ModelInfo) -> &'i Quantity {
+    let (inputs, outputs) = (&design.equations.inputs, &design.outputs);
+    match outputs.get(column) {
+        Some(&state) => &info.states[state],
+        None => &info.inputs[inputs[(column - outputs.len()) % inputs.len()]],
+    }
 }
 
 /// `N/(rad/s)`
@@ -226,11 +221,7 @@ fn counted(modes: &[Complex<f64>]) -> Vec<String> {
     told
 }
 
-fn names(info: &ModelInfo, states: &[usize]) -> Vec<String> {
-    names_of(&info.states, states)
-}
-
-fn names_of(quantities: &[Quantity], places: &[usize]) -> Vec<String> {
+fn names(quantities: &[Quantity], places: &[usize]) -> Vec<String> {
     places
         .iter()
         .map(|&place| quantities[place].name.to_string())
@@ -243,18 +234,13 @@ pub(crate) fn schedule_text(schedule: &Schedule, info: &ModelInfo) -> String {
     let Some((_, first)) = designs.first() else {
         return String::new();
     };
-    let (inputs, outputs) = (&first.equations.inputs, &first.outputs);
-    let mut heading = vec![over.name.to_string(), "rank".to_owned()];
-    let mut units = vec![over.unit.to_string(), String::new()];
+    let mut heading = row![over.name, "rank"];
+    let mut units = row![over.unit, ""];
     let columns = first.law.as_ref().map_or(0, |law| law.gain.ncols());
     let mut scales = Vec::new();
-    for &input in inputs {
+    for &input in &first.equations.inputs {
         for column in 0..columns {
-            let on = match outputs.get(column) {
-                Some(&state) => &info.states[state],
-                None => &info.inputs[inputs[(column - outputs.len()) % inputs.len()]],
-            };
-            let of = &info.inputs[input];
+            let (on, of) = (fed_back(first, column, info), &info.inputs[input]);
             heading.push(format!("{} on {}", of.name, on.name));
             units.push(gain_unit(of, on));
             scales.push(on.scale / of.scale);
@@ -262,18 +248,11 @@ pub(crate) fn schedule_text(schedule: &Schedule, info: &ModelInfo) -> String {
     }
     let mut rows = vec![heading, units];
     for (value, design) in designs {
-        let mut row = vec![
-            number(over.to_unit(*value)),
-            design.controllability.rank.to_string(),
-        ];
+        let mut row = row![number(over.to_unit(*value)), design.controllability.rank];
         if let Some(law) = &design.law {
             let gains = law.gain.transpose();
-            row.extend(
-                gains
-                    .iter()
-                    .zip(&scales)
-                    .map(|(gain, scale)| number(gain * scale)),
-            );
+            let gains = gains.iter().zip(&scales);
+            row.extend(gains.map(|(gain, scale)| number(gain * scale)));
         }
         rows.push(row);
     }

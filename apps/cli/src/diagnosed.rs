@@ -10,20 +10,13 @@ use appell_report::gap::{
     Headline, before_sentence, divided, doubts, events, hints, is_determined, joined, law_sentence,
     left_of_forces, left_out, percent, ranges, said, share, short,
 };
+use appell_report::row;
 use appell_report::text::number;
 
 /// Widest cell of a table that others are aligned with.
 const WIDEST: usize = 60;
 /// Number of hypotheses in the summary.
 const LISTED: usize = 3;
-
-/// The commands that write the diagnosed effect into the spec.
-pub(crate) struct Apply {
-    /// The command that writes the report, if none was written.
-    pub(crate) before: Option<String>,
-    /// The command that reads it.
-    pub(crate) command: String,
-}
 
 /// Fits that did not converge, if they may have changed the verdict.
 fn failures(text: &mut String, report: &Report) {
@@ -51,8 +44,8 @@ fn failures(text: &mut String, report: &Report) {
     }
 }
 
-/// The summary, about ten lines.
-pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> String {
+/// The summary, about ten lines; the commands `apply` write the diagnosed effect into the spec.
+pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &[String]) -> String {
     let mut text = String::new();
     let Headline {
         cause,
@@ -72,7 +65,11 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     }
     let _ = writeln!(text, "  change    {}", change.join("\n            "));
     if let Some(number) = applied {
-        commands(&mut text, number, apply);
+        let _ = write!(text, "            {}", apply.join("\n            "));
+        if number > 1 {
+            let _ = write!(text, " --hypothesis {number}");
+        }
+        text.push('\n');
     }
     if let Some(error) = error {
         let _ = writeln!(text, "  error     {error}");
@@ -153,50 +150,27 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     text
 }
 
-/// The commands that write a hypothesis into the spec.
-fn commands(text: &mut String, number: usize, apply: &Apply) {
-    // Writing to a string cannot fail.
-    if let Some(command) = &apply.before {
-        let _ = writeln!(text, "            {command}");
-    }
-    let hypothesis = match number {
-        1 => String::new(),
-        number => format!(" --hypothesis {number}"),
-    };
-    let _ = writeln!(text, "            {}{hypothesis}", apply.command);
-}
-
 /// The table of several rigs.
 pub(crate) fn table(rigs: &[Rig], reports: &Path) -> String {
-    let heading = ["rig", "verdict", "which", "P", "closed", "budget"].map(str::to_owned);
-    let rows = rigs.iter().map(|rig| match &rig.outcome {
-        Ok(summary) => {
-            let (first, probability) = summary.first();
-            let closed = summary.how_far.as_ref().and_then(|far| far.closed);
-            let closed = closed.map_or_else(|| "-".to_owned(), |c| format!("{:.1} %", 100.0 * c));
-            [
-                rig.name.clone(),
-                summary.verdict.replace('_', " "),
+    let mut rows = vec![row!["rig", "verdict", "which", "P", "closed", "budget"]];
+    rows.extend(rigs.iter().map(|rig| match &rig.outcome {
+        Ok(report) => {
+            let (first, probability) = report.first();
+            let closed = report.how_far.as_ref().and_then(|far| far.closed);
+            row![
+                rig.name,
+                report.verdict.replace('_', " "),
                 first,
                 format!("{:.1} %", 100.0 * probability),
-                closed,
-                summary.budget(),
+                closed.map_or_else(|| "-".to_owned(), |c| format!("{:.1} %", 100.0 * c)),
+                report.budget()
             ]
         }
         Err(reason) => {
-            let reason = reason.lines().next().unwrap_or_default().to_owned();
-            let empty = String::new;
-            [
-                rig.name.clone(),
-                "error".to_owned(),
-                reason,
-                empty(),
-                empty(),
-                empty(),
-            ]
+            let reason = reason.lines().next().unwrap_or_default();
+            row![rig.name, "error", reason, "", "", ""]
         }
-    });
-    let rows: Vec<[String; 6]> = std::iter::once(heading).chain(rows).collect();
+    }));
     let wide = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
         // An error spans the columns that follow.

@@ -61,10 +61,7 @@ pub(crate) fn model_of(source: Source) -> Result<Model, Error> {
 }
 
 fn made(make: impl FnOnce() -> Result<Model, appell::Error>) -> Result<Model, Error> {
-    let spinner = progress::spinner("deriving the equations of motion");
-    let model = make();
-    spinner.finish_and_clear();
-    let model = model?;
+    let model = progress::during("deriving the equations of motion", |_| make())?;
     if let Some(text) = model.note() {
         note(text);
     }

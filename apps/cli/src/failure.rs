@@ -6,8 +6,6 @@ use std::io::{IsTerminal, Write as _};
 use appell::{Class, Field};
 use appell_spec::{Report, visible};
 
-use crate::flags::flag;
-
 /// Why a command fails.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
@@ -84,7 +82,6 @@ fn of_library(error: &appell::Error) -> String {
 fn worded(error: &appell::Error) -> String {
     let text = match error {
         appell::Error::Request { field, message } => about(Some(*field), message),
-        appell::Error::Design(error) => about(error.field, &error.message),
         appell::Error::At { place, source } => format!("at {place}: {}", worded(source)),
         other => about(other.field(), &other.to_string()),
     };
@@ -134,4 +131,48 @@ fn shown(report: &Report) -> String {
         report.plain()
     };
     text.trim_end().to_owned()
+}
+
+/// The flag of a part of a request, if it has one.
+fn flag(field: Field) -> Option<&'static str> {
+    Some(match field {
+        Field::Engine => "--engine",
+        Field::Set => "--set",
+        Field::Initial => "--initial",
+        Field::Input => "--input",
+        Field::Recorded | Field::Inputs => "--inputs",
+        Field::Interpolation => "--interpolation",
+        Field::Feedback => "--feedback",
+        Field::End => "--t-end-s",
+        Field::Interval => "--dt-s",
+        Field::Fix => "--fix",
+        Field::Free => "--free",
+        Field::Along => "--along",
+        Field::Require => "--require",
+        Field::Chart => "--chart",
+        Field::Grid => "--grid",
+        Field::Equation => "--equation",
+        Field::About => "--about",
+        Field::At => "--at",
+        Field::Outputs => "--outputs",
+        Field::Poles => "--poles",
+        Field::Weights => "--lqr",
+        Field::Sampling => "--sampled-ms, --delay-ms",
+        Field::Schedule => "--schedule",
+        Field::Attraction => "--attraction",
+        Field::Duration => "--for-s",
+        Field::Plot => "--plot",
+        Field::Also => "--also",
+        Field::Drifting => "--drifting",
+        Field::Effects => "--without",
+        Field::Hypothesis => "--hypothesis",
+        Field::Bias => "--bias",
+        Field::Letters => "--parameters",
+        Field::Lock => "--lock",
+        Field::Sources => "--sources-only",
+        Field::Chunk => "--chunk",
+        Field::Jobs => "--jobs",
+        Field::Device => "--device",
+        _ => return None,
+    })
 }

@@ -1,7 +1,5 @@
 //! `appell`: from a mechanism spec to equations of motion, numbers and motions.
 
-mod breaches;
-mod choice;
 mod commands;
 mod completion;
 mod design_report;
@@ -9,13 +7,11 @@ mod destinations;
 mod diagnosed;
 mod engine;
 mod failure;
-mod flags;
 mod interrupt;
 mod motions;
 mod output;
 mod picture;
 mod progress;
-mod relations;
 mod summary;
 
 use std::process::ExitCode;

@@ -2,21 +2,25 @@
 
 pub(crate) mod text;
 
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use crate::failure::Error;
+use appell::files;
 use appell::setup::{Assignment, Setup};
-use appell::steady::{Answer, Resolved, STARTS, Span};
-use appell_analysis::{Axis, Chart};
+use appell::steady::{Answer, Resolved, STARTS, Span, export};
+use appell_analysis::{Branch, Stability, Term};
+use appell_report::figure::Figure;
+use serde_json::Value;
 
-use crate::{engine, progress};
+use crate::{engine, output, picture, progress};
 
 /// The problem: prescribed values, free quantities, continuation parameter.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Question {
     /// Name of a shipped mechanism, or path of a spec or a robot file
-    pub(crate) model: String,
+    model: String,
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Assignment>,
@@ -34,7 +38,7 @@ pub(crate) struct Question {
     free: Vec<String>,
     /// Continue the motions along a quantity, such as speed=0.5..10 or theta=-30deg..30deg
     #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
-    pub(crate) along: Option<Span>,
+    along: Option<Span>,
     /// Lower bound for feasible motions, in quotes: 'z>=0'
     #[arg(long, value_name = "BOUND", allow_hyphen_values = true)]
     require: Vec<Least>,
@@ -46,13 +50,13 @@ pub(crate) struct Question {
     ignore_ranges: bool,
     /// Write the motions, in the units of the spec; `-` is standard output
     #[arg(long, value_name = "FILE.csv")]
-    pub(crate) csv: Option<PathBuf>,
+    csv: Option<PathBuf>,
     /// Plot the motions against the quantity
     #[arg(long, value_name = "FILE.svg|png")]
-    pub(crate) plot: Option<PathBuf>,
+    plot: Option<PathBuf>,
     /// Write the motions as JSON, in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
+    json: Option<PathBuf>,
 }
 
 /// `NAME>=VALUE` as it was given.
@@ -100,20 +104,55 @@ impl Question {
         };
         then(&model.resolve(&question)?, &setup)
     }
-}
 
-/// The motions, with a progress indicator.
-pub(crate) fn answer(asked: &Resolved<'_>) -> Result<Answer, Error> {
-    let spinner = progress::spinner("searching for steady motions");
-    let answer = asked.answer();
-    spinner.finish_and_clear();
-    Ok(answer?)
-}
+    /// The motions, printed with what there is to say `about` the stability of each alone, and written to the requested
+    /// files; `figure` draws branches.
+    pub(crate) fn answer(
+        &self,
+        asked: &Resolved<'_>,
+        about: impl Fn(&Stability) -> String,
+        figure: impl Fn(Term, &[Branch]) -> Figure,
+    ) -> Result<(), Error> {
+        let answer = progress::during("searching for steady motions", |_| asked.answer())?;
+        let told = match &answer {
+            Answer::Motions(motions) => {
+                let each = motions.iter().map(|(_, stability)| about(stability));
+                text::motions(asked, motions) + &each.collect::<String>()
+            }
+            Answer::Branches(branches) => text::branches(asked, branches),
+        };
+        let svg = || match (&answer, asked.along) {
+            (Answer::Branches(branches), Some((along, _))) => {
+                Some(figure(along, branches).to_svg())
+            }
+            _ => None,
+        };
+        self.write(
+            asked,
+            &told,
+            || appell::json::steady(asked, &answer),
+            |to| export::csv(asked, &answer, to),
+            svg,
+        )
+    }
 
-/// The stability chart, with a progress indicator.
-pub(crate) fn chart(asked: &Resolved<'_>, axes: [Axis; 2]) -> Result<Chart, Error> {
-    let spinner = progress::spinner("computing the chart");
-    let chart = asked.chart(axes);
-    spinner.finish_and_clear();
-    Ok(chart?)
+    /// Prints the structure of the equations with a text, and writes the requested files.
+    pub(crate) fn write(
+        &self,
+        asked: &Resolved<'_>,
+        told: &str,
+        json: impl FnOnce() -> Value,
+        csv: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        svg: impl FnOnce() -> Option<String>,
+    ) -> Result<(), Error> {
+        output::json(self.json.as_deref(), json)?;
+        if let Some(path) = &self.csv {
+            files::write_with(path, csv)?;
+        }
+        if let Some((path, svg)) = self.plot.as_ref().and_then(|path| Some((path, svg()?))) {
+            picture::write(path, &svg)?;
+        }
+        let text = text::structure(asked) + told;
+        output::print_beside(&text, &[&self.csv, &self.json, &self.plot])
+    }
 }

@@ -1,11 +1,12 @@
 //! Text output, kept apart from files on standard output.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::failure::Error;
 use appell::files;
 use appell_spec::visible;
 use console::Term;
+use serde::Serialize;
 
 use crate::failure::tell;
 
@@ -24,6 +25,14 @@ pub(crate) fn print_beside(text: &str, files: &[&Option<PathBuf>]) -> Result<(),
         return Ok(());
     }
     print(text)
+}
+
+/// Writes a result as JSON to a file that was asked for.
+pub(crate) fn json<V: Serialize>(
+    file: Option<&Path>,
+    value: impl FnOnce() -> V,
+) -> Result<(), Error> {
+    file.map_or(Ok(()), |path| Ok(files::write_json(path, &value())?))
 }
 
 /// The width of the terminal that shows standard output, if one does.

@@ -4,11 +4,13 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A spinner for work of unknown duration.
-pub(crate) fn spinner(doing: &str) -> ProgressBar {
-    let bar = ProgressBar::new_spinner().with_message(doing.to_owned());
-    bar.enable_steady_tick(Duration::from_millis(120));
-    bar
+/// Does work of unknown duration under a spinner, which is there to show its stages.
+pub(crate) fn during<T>(doing: &str, work: impl FnOnce(&ProgressBar) -> T) -> T {
+    let spinner = ProgressBar::new_spinner().with_message(doing.to_owned());
+    spinner.enable_steady_tick(Duration::from_millis(120));
+    let done = work(&spinner);
+    spinner.finish_and_clear();
+    done
 }
 
 /// A bar over the simulated time, in milliseconds.

@@ -38,7 +38,7 @@ impl OnCard {
         let kinds = kinds.collect::<PyResult<Vec<_>>>()?;
         let model = Arc::clone(&model.inner);
         let made = watched(py, None, move |_| card::OnCard::new(model.source(), &kinds))?;
-        Ok(Self(Arc::new(made.raise(py)?)))
+        Ok(Self(Arc::new(made)))
     }
 
     /// Its functions.

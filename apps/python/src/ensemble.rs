@@ -64,7 +64,7 @@ impl Study {
             None => Arc::new(Memory::default()),
         };
         Ok(Self {
-            ensemble: Arc::new(ensemble.raise(py)?),
+            ensemble: Arc::new(ensemble),
             store,
         })
     }
@@ -122,7 +122,7 @@ impl Study {
     ) -> PyResult<()> {
         let running = running(jobs, shard, chunk)?;
         let (ensemble, store) = (Arc::clone(&self.ensemble), Arc::clone(&self.store));
-        let ran = watched(py, progress, move |told| {
+        watched(py, progress, move |told| {
             let store = store.as_ref();
             let [cases, replicates] = match chunks {
                 Some(names) => ensemble.named(&names)?,
@@ -141,9 +141,8 @@ impl Study {
                 told.stage("rare event");
                 ensemble.fill_replicates(store, &replicates, running, watch)?;
             }
-            Ok::<(), Error>(())
-        })?;
-        ran.raise(py)
+            Ok(())
+        })
     }
 
     /// Numbers of the cases, the columns in SI, when the motions ended, and why they did early.

@@ -22,6 +22,11 @@ pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
     };
     let field = error.field().map(argument);
     let text = match error {
+        // Its argument is one, the pair of both.
+        Error::Request {
+            field: Field::Sampling,
+            ..
+        } => error.to_string(),
         Error::Request { field, message } => format!("{}: {message}", argument(*field)),
         other => other.to_string(),
     };

@@ -69,7 +69,6 @@ impl Model {
                 appell::Model::find(&spec)
             }
         })?;
-        let model = model.raise(py)?;
         let info = model.info();
         let mut u = vec![0.0; info.input_len()];
         let x = info.initial_state();
@@ -165,27 +164,22 @@ impl Model {
             },
             out,
         };
+        use FunctionKind as F;
         match function {
-            "rates" => call.evaluate(Some(FunctionKind::Rates), [&[n]], |at, _, [rates]| {
-                model.rates(at, rates);
+            "rates" => call.evaluate(Some(F::Rates), [&[n]], |at, _, [rates]| {
+                model.rates(at, rates)
             }),
             "jacobians" => {
                 let shapes: [&[usize]; 3] = [&[n], &[n, n], &[n, m]];
-                call.evaluate(
-                    Some(FunctionKind::Jacobians),
-                    shapes,
-                    |at, _, [rates, a, b]| {
-                        model.jacobians(at, rates, a, b);
-                    },
-                )
+                call.evaluate(Some(F::Jacobians), shapes, |at, _, [rates, a, b]| {
+                    model.jacobians(at, rates, a, b);
+                })
             }
-            "parameter_jacobian" => call.evaluate(
-                Some(FunctionKind::ParameterJacobian),
-                [&[n, k]],
-                |at, _, [by_p]| {
+            "parameter_jacobian" => {
+                call.evaluate(Some(F::ParameterJacobian), [&[n, k]], |at, _, [by_p]| {
                     model.parameter_jacobian(at, by_p);
-                },
-            ),
+                })
+            }
             "appell" => call.evaluate(
                 None,
                 [&[s, s], &[s], &[s]],
@@ -193,52 +187,48 @@ impl Model {
                     model.appell(at, mass, bias, forces);
                 },
             ),
-            "energies" => call.evaluate(
-                None,
-                [&[], &[], &[], &[]],
-                |at, _, [kinetic, potential, power, acceleration]| {
-                    let energies = model.energies(at);
-                    kinetic[0] = energies.kinetic;
-                    potential[0] = energies.potential;
-                    power[0] = energies.power;
-                    acceleration[0] = energies.acceleration;
-                },
-            ),
-            "outputs" => call.evaluate(Some(FunctionKind::Outputs), [&[l]], |at, _, [outputs]| {
+            "energies" => call.evaluate(None, [&[]; 4], |at, _, results| {
+                let all = model.energies(at);
+                let all = [all.kinetic, all.potential, all.power, all.acceleration];
+                for (result, energy) in results.into_iter().zip(all) {
+                    result[0] = energy;
+                }
+            }),
+            "outputs" => call.evaluate(Some(F::Outputs), [&[l]], |at, _, [outputs]| {
                 model.outputs(at, outputs);
             }),
             "output_jacobians" => {
                 let model = self.inner.all_equations().raise(py)?;
                 let shapes: [&[usize]; 3] = [&[l], &[l, n], &[l, m]];
-                let kind = Some(FunctionKind::OutputJacobians);
-                call.evaluate(kind, shapes, |at, _, [outputs, c, d]| {
-                    model.output_jacobians(at, outputs, c, d);
+                call.evaluate(
+                    Some(F::OutputJacobians),
+                    shapes,
+                    |at, _, [outputs, c, d]| {
+                        model.output_jacobians(at, outputs, c, d);
+                    },
+                )
+            }
+            "constraint_forces" => {
+                call.evaluate(Some(F::ConstraintForces), [&[r, 3]], |at, _, [forces]| {
+                    model.constraint_forces(at, forces);
                 })
             }
-            "constraint_forces" => call.evaluate(
-                Some(FunctionKind::ConstraintForces),
-                [&[r, 3]],
-                |at, _, [forces]| {
-                    model.constraint_forces(at, forces);
-                },
-            ),
-            "inverse_dynamics" => call.evaluate(
-                Some(FunctionKind::InverseDynamics),
-                [&[s]],
-                |at, given, [demand]| {
+            "inverse_dynamics" => {
+                call.evaluate(Some(F::InverseDynamics), [&[s]], |at, given, [demand]| {
                     model.inverse_dynamics(at, given, demand);
-                },
-            ),
-            "inverse_dynamics_jacobians" => call.evaluate(
-                Some(FunctionKind::InverseDynamicsJacobians),
-                [&[s], &[s, n], &[s, m], &[s, s]],
-                |at, given, [demand, by_state, by_inputs, mass]| {
-                    model.inverse_dynamics_jacobians(at, given, demand, by_state, by_inputs, mass);
-                },
-            ),
-            other => Err(PyValueError::new_err(format!(
-                "there is no function `{other}`"
-            ))),
+                })
+            }
+            "inverse_dynamics_jacobians" => {
+                let shapes: [&[usize]; 4] = [&[s], &[s, n], &[s, m], &[s, s]];
+                let kind = Some(F::InverseDynamicsJacobians);
+                call.evaluate(kind, shapes, |at, given, [demand, by_x, by_u, mass]| {
+                    model.inverse_dynamics_jacobians(at, given, demand, by_x, by_u, mass);
+                })
+            }
+            other => {
+                let message = format!("there is no function `{other}`");
+                Err(PyValueError::new_err(message))
+            }
         }
     }
 
@@ -295,12 +285,11 @@ impl Model {
         }
         question.starts = starts.unwrap_or(question.starts);
         let model = Arc::clone(&self.inner);
-        let told = watched(py, None, move |_| {
+        watched(py, None, move |_| {
             let asked = model.resolve(&question)?;
             let answer = asked.answer()?;
-            Ok::<_, appell::Error>(appell::json::steady(&asked, &answer).to_string())
-        })?;
-        told.raise(py)
+            Ok(appell::json::steady(&asked, &answer).to_string())
+        })
     }
 
     /// A design as JSON, and the text of its law.
@@ -327,14 +316,13 @@ impl Model {
             delay_ms: sampled.map(|[_, delay]| delay),
         };
         let model = Arc::clone(&self.inner);
-        let told = watched(py, None, move |_| {
+        watched(py, None, move |_| {
             let design = model.control(&request)?;
             let law = design.law.is_some().then(|| model.law(&design));
             let law = law.transpose()?;
             let json = appell::json::design(model.info(), &design);
-            Ok::<_, appell::Error>((json.to_string(), law))
-        })?;
-        told.raise(py)
+            Ok((json.to_string(), law))
+        })
     }
 
     /// The derivation up to a stage, as `text`, `latex`, `html` or `formulas`.
@@ -380,7 +368,7 @@ impl Model {
         let set = recordings.map(DataSet::shared);
         let model = Arc::clone(&self.inner);
         let found = watched(py, None, move |_| model.base_parameters(set.as_deref()))?;
-        Ok(found.raise(py)?.to_json().to_string())
+        Ok(found.to_json().to_string())
     }
 
     /// The regressor as a Python module.
@@ -413,6 +401,6 @@ impl Model {
         compute: impl FnOnce(&Source) -> Result<String, appell::Error> + Send + 'static,
     ) -> PyResult<String> {
         let model = Arc::clone(&self.inner);
-        watched(py, None, move |_| compute(model.source()))?.raise(py)
+        watched(py, None, move |_| compute(model.source()))
     }
 }

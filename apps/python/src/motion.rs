@@ -4,9 +4,8 @@ use std::cell::Cell;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use appell::setup::Assignment;
 use appell::{
-    CsvOptions, Driven, Extras, InputSource, Law, Method, Motion, TabulatedInputs, Trajectory,
+    CsvOptions, Driven, Extras, InputSource, Method, Motion, Remarks, TabulatedInputs, Trajectory,
 };
 use appell_report::figure::Figure;
 use appell_runtime::Signal;
@@ -139,19 +138,12 @@ pub(crate) fn simulate(
     motion.interval = dt;
     motion.parameters = assignments(&parameters);
     motion.initial = assignments(&initial);
-    motion.inputs = expressions
-        .iter()
-        .map(|(name, value)| Assignment::new(name, value))
-        .collect();
+    motion.inputs = assignments(&expressions);
     motion.recorded = recorded;
     motion.interpolation = interpolated.as_deref().map(interpolation).transpose()?;
-    motion.laws = laws
-        .into_iter()
-        .map(|text| Law::Text {
-            name: "feedback law".to_owned(),
-            text,
-        })
-        .collect();
+    for law in &laws {
+        motion = motion.feedback(law);
+    }
     motion.method = match (method, step) {
         ("dop853", _) => Method::Dop853,
         ("dopri5", _) => Method::Dopri5,
@@ -295,11 +287,10 @@ pub(crate) fn restored(
         trajectory,
         failure,
         undefined,
-        undriven: false,
-        held_from,
-        smooth: None,
-        begins: None,
-        differs: Vec::new(),
+        remarks: Remarks {
+            held_from,
+            ..Remarks::default()
+        },
     };
     Ok(Simulated {
         model: Arc::clone(model),
@@ -328,7 +319,7 @@ impl Simulated {
                 extras.residuals,
             ],
             [simulated.failure.clone(), simulated.undefined.clone()],
-            simulated.held_from,
+            simulated.remarks.held_from,
             [cost.steps, cost.rejected, cost.evaluations],
         ))
     }
@@ -374,13 +365,13 @@ impl Simulated {
     /// The time from which the last values of recorded inputs are held.
     #[getter]
     fn held_from(&self) -> Option<f64> {
-        self.simulated.held_from
+        self.simulated.remarks.held_from
     }
 
     /// Recorded inputs that look sampled from a continuous signal.
     #[getter]
     fn smooth(&self) -> Option<&str> {
-        self.simulated.smooth.as_deref()
+        self.simulated.remarks.smooth.as_deref()
     }
 
     /// Steps, rejected steps, evaluations.

@@ -8,7 +8,7 @@ use appell::engine::Engine;
 use appell::gap_report::GapReport;
 use appell::identification::{Answer, Begin};
 use appell::recording::Frame;
-use appell::{Error, Source, identification};
+use appell::{Source, identification};
 use appell_report::identification as identified;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -85,7 +85,7 @@ impl DataSet {
                 appell::recording::read_frames(frames, described, model.as_deref())
             }
         })?;
-        Ok(Self(Arc::new(set.raise(py)?)))
+        Ok(Self(Arc::new(set)))
     }
 
     /// The drafted text of a `recording.toml` at a path, and what the recordings do not tell.
@@ -103,7 +103,6 @@ impl DataSet {
             None => appell::recording::draft(&model, &paths, &path, rate_hz),
             Some(frames) => appell::recording::draft_frames(&model, frames, &path, rate_hz),
         })?;
-        let drafted = drafted.raise(py)?;
         Ok((drafted.text, drafted.questions))
     }
 
@@ -152,7 +151,7 @@ impl DataSet {
         })?;
         Ok(Identified {
             set: Arc::clone(&self.0),
-            answer: answer.raise(py)?,
+            answer,
         })
     }
 
@@ -182,39 +181,25 @@ impl DataSet {
         }
         let set = Arc::clone(&self.0);
         let before = against.map(|before| Arc::clone(&before.0));
-        let gap = watched(py, progress, move |watch| {
-            let mut library = Library::shipped()?;
-            for kind in &without {
-                library = library.without(kind)?;
-            }
-            let library = library.with(&effects)?;
+        watched(py, progress, move |watch| {
+            let library = Library::of(&without, &effects)?;
             let options = Options {
                 pictures: true,
                 limits,
-                alternatives: alternatives
-                    .iter()
-                    .map(|model| {
-                        let source = Source::find(model)?;
-                        Ok(appell::recording::Spec::from(&source))
-                    })
-                    .collect::<Result<_, Error>>()?,
+                alternatives: appell::recording::specs(&alternatives)?,
                 horizon,
                 tolerance,
                 present: Vec::new(),
             };
             let stage = |stage| watch.stage(stage);
-            let report = match &before {
-                Some(before) => library.against(before, &set, &options, stage),
-                None => library.diagnose(&set, &options, stage),
-            }?;
+            let report = library.diagnose(before.as_deref(), &set, &options, stage)?;
             let findings = [library.warnings, appell::recording::warnings(&set)].concat();
-            Ok::<_, Error>(Gap {
+            Ok(Gap {
                 set,
                 report,
                 findings,
             })
-        })?;
-        gap.raise(py)
+        })
     }
 
     /// Times in s and a column for each channel, in SI, of a run.
@@ -306,7 +291,7 @@ pub(crate) fn apply(
     let report = GapReport::parse("gap report", report).raise(py)?;
     let improved = source.improved(&report, hypothesis, out).raise(py)?;
     let summary = improved.summary(out);
-    Ok((improved.spec, summary))
+    Ok((improved.text, summary))
 }
 
 /// Writes a folder with recordings of a simulated rig; the names of the files.

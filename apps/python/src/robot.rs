@@ -24,8 +24,7 @@ pub(crate) fn corrected_robot(
     let text = files::read(&file, files::MAX_DATA).raise(py)?;
     let report = GapReport::parse("gap report", report).raise(py)?;
     let better = correction::correct(&file, &text, &report, hypothesis).raise(py)?;
-    let summary = better.summary();
-    Ok((better.text, summary))
+    Ok((better.text, better.lines))
 }
 
 /// The spec of a robot file, and a report of the import as JSON.
@@ -60,8 +59,7 @@ pub(crate) fn import_robot(
     let name = file.to_string_lossy().into_owned();
     let robot = watched(py, None, move |_| {
         robot::read(&file, root.as_deref(), &options)
-    })?
-    .raise(py)?;
+    })?;
     Ok((
         robot.spec.clone(),
         appell::json::robot(&name, &robot).to_string(),

@@ -7,10 +7,11 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::Duration;
 
+use appell::Error;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-use crate::errors::mistake;
+use crate::errors::{Raise as _, mistake};
 
 /// Interval of checks for an interruption.
 const LOOK: Duration = Duration::from_millis(50);
@@ -42,14 +43,15 @@ impl Watch {
     }
 }
 
-/// Computes on another thread without the interpreter lock. `progress` is called with each stage; an exception
-/// in it, and a keyboard interruption, are raised at once, and the computation ends at its next stage.
+/// Computes on another thread without the interpreter lock, and raises the exception of an error. `progress` is called with
+/// each stage; an exception in it, and a keyboard interruption, are raised at once, and the computation ends at its next
+/// stage.
 pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
-    compute: impl FnOnce(&Watch) -> T + Send + 'static,
+    compute: impl FnOnce(&Watch) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<T> {
-    run(py, progress, false, compute)
+    run(py, progress, false, compute)?.raise(py)
 }
 
 /// The same for a computation that calls Python: an interruption is raised once it has ended, since no thread may

@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use appell::correction::{self, Correction};
 use appell::difference::unified;
 use appell::gap_report::GapReport;
 use appell::source::Source;
 use appell::{files, robot};
-use serde_json::Value;
 
 use crate::failure::Error;
 use crate::output;
@@ -58,25 +58,22 @@ impl Apply {
         let out = self.out(|| PathBuf::from(format!("{}_improved.toml", report.mechanism)));
         let file = out.to_string_lossy();
         let improved = source.improved(&report, self.hypothesis, &file)?;
-        if improved.spec == source.text && !self.dry_run && self.json.is_none() {
+        if improved.text == source.text && !self.dry_run && self.json.is_none() {
             return output::print(&improved.summary("nothing to write"));
         }
-        let texts = [source.text.as_str(), &improved.spec];
-        self.deliver(&out, texts, improved.json(), &improved.summary(&file))
+        self.deliver(&out, &source.text, &improved)
     }
 
     /// Corrects a robot file.
     fn robot(&self, path: &Path, text: &str) -> Result<(), Error> {
         let report = GapReport::read(&self.report)?;
-        let correction = appell::correction::correct(path, text, &report, self.hypothesis)?;
+        let correction = correction::correct(path, text, &report, self.hypothesis)?;
         let out = self.out(|| {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
             let end = path.extension().unwrap_or_default().to_string_lossy();
             path.with_file_name(format!("{stem}_improved.{end}"))
         });
-        let head = format!("{}: {} corrected\n", out.display(), path.display());
-        let summary = head + &correction.summary();
-        self.deliver(&out, [text, &correction.text], correction.json(), &summary)
+        self.deliver(&out, text, &correction)
     }
 
     fn out(&self, default: impl FnOnce() -> PathBuf) -> PathBuf {
@@ -84,20 +81,15 @@ impl Apply {
     }
 
     /// Writes the changed text, or shows how it differs.
-    fn deliver(
-        &self,
-        out: &Path,
-        [before, after]: [&str; 2],
-        edits: Value,
-        summary: &str,
-    ) -> Result<(), Error> {
-        let difference = unified(&self.model, &out.to_string_lossy(), before, after);
+    fn deliver(&self, out: &Path, before: &str, corrected: &Correction) -> Result<(), Error> {
+        let (file, after) = (out.to_string_lossy(), &corrected.text);
+        let difference = unified(&self.model, &file, before, after);
         if !self.dry_run {
             self.may_replace(out, after)?;
             files::write(out, after)?;
         }
         if let Some(path) = &self.json {
-            let mut edits = edits;
+            let mut edits = corrected.json();
             edits["schema"] = "apply/1".into();
             edits["diff"] = difference.as_str().into();
             files::write_json(path, &edits)?;
@@ -105,7 +97,8 @@ impl Apply {
         if self.dry_run {
             return output::print_beside(&difference, &[&self.json]);
         }
-        output::print_beside(summary, &[&Some(out.to_owned()), &self.json])
+        let outputs = [&Some(out.to_owned()), &self.json];
+        output::print_beside(&corrected.summary(&file), &outputs)
     }
 
     /// Refuses to overwrite a file that was not named.

@@ -2,8 +2,6 @@
 
 use std::path::PathBuf;
 
-use appell::files;
-
 use crate::failure::Error;
 use crate::{engine, output, progress};
 
@@ -37,13 +35,10 @@ impl Base {
             data => Some(appell::recording::read(data, Some(&self.model))?),
         };
         let model = engine::model(&self.model, &[], None)?;
-        let spinner = progress::spinner("finding combinations of parameters");
-        let found = model.base_parameters(set.as_ref());
-        spinner.finish_and_clear();
-        let found = found?;
-        if let Some(path) = &self.json {
-            files::write_json(path, &found.to_json())?;
-        }
+        let found = progress::during("finding combinations of parameters", |_| {
+            model.base_parameters(set.as_ref())
+        })?;
+        output::json(self.json.as_deref(), || found.to_json())?;
         output::print_beside(&found.to_text(), &[&self.json])
     }
 }

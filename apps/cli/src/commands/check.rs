@@ -67,9 +67,10 @@ impl Check {
                 }
             }
         }
-        if let Some(path) = &self.json {
-            files::write_json(path, &json!({ "schema": "check/1", "specs": found }))?;
-        }
+        output::json(
+            self.json.as_deref(),
+            || json!({ "schema": "check/1", "specs": found }),
+        )?;
         if failed.is_empty() {
             Ok(())
         } else {
@@ -80,10 +81,8 @@ impl Check {
     /// Checks one spec. Returns its JSON entry, and a failure if equations disagree.
     fn check(&self, model: &str, quiet: bool) -> Result<(Value, Option<Error>), Error> {
         let source = engine::source(model)?;
-        let spinner = progress::spinner(&format!("deriving {}", source.file));
-        let checked = source.check();
-        spinner.finish_and_clear();
-        let checked = checked?;
+        let deriving = format!("deriving {}", source.file);
+        let checked = progress::during(&deriving, |_| source.check())?;
         let thorough = self.thorough.then(|| self.compare(&checked, &source));
         let thorough = thorough.transpose()?;
         if !quiet {
@@ -100,11 +99,11 @@ impl Check {
         if let (Some(typed), false) = (&typed, quiet) {
             output::print(&typed.to_string())?;
         }
-        let mut entry = appell::json::check(&checked);
+        let mut entry = checked.to_json();
         let mut disagreements = Vec::new();
         if let Some(thorough) = thorough {
             disagreements.extend(thorough.failure());
-            entry["thorough"] = appell::json::thorough(&thorough);
+            entry["thorough"] = thorough.to_json();
         }
         if let Some(typed) = typed {
             disagreements.extend(typed.failure());
@@ -119,10 +118,10 @@ impl Check {
     }
 
     fn compare(&self, checked: &Checked, source: &Source) -> Result<Thorough, Error> {
-        let spinner = progress::spinner(&format!("comparing formulations of {}", source.file));
-        let thorough = checked.thorough(self.time_limit_s);
-        spinner.finish_and_clear();
-        Ok(thorough?)
+        let comparing = format!("comparing formulations of {}", source.file);
+        Ok(progress::during(&comparing, |_| {
+            checked.thorough(self.time_limit_s)
+        })?)
     }
 }
 

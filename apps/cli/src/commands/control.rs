@@ -106,9 +106,7 @@ impl Control {
             None => self.designed(&model)?,
             Some(range) => self.scheduled(&model, range)?,
         };
-        if let Some(path) = &self.json {
-            files::write_json(path, &json)?;
-        }
+        output::json(self.json.as_deref(), || json)?;
         output::print_beside(&text, &[&self.json, &self.write, &self.plot])
     }
 
@@ -130,7 +128,7 @@ impl Control {
             bar.finish_and_clear();
             let region = region?;
             text += &region.text();
-            json["attraction"] = appell::json::attraction(&region);
+            json["attraction"] = region.to_json();
             if let Some(path) = &self.plot {
                 picture::write(path, &region.map()?.to_svg())?;
             }

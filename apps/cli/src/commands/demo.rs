@@ -11,7 +11,7 @@ use appell_report::figure::Figure;
 use appell_runtime::integrate::Options;
 
 use super::simulate::{simulated, write_csv};
-use crate::diagnosed::{self, Apply};
+use crate::diagnosed;
 use crate::output::shell;
 use crate::{engine, output, progress, summary};
 
@@ -120,10 +120,9 @@ fn rig(written: &mut Written<'_>) -> Result<String, Error> {
         pictures: true,
         ..DiagnosisOptions::default()
     };
-    let spinner = progress::spinner("diagnosing");
-    let report = appell::diagnose(&set, &options, |stage| spinner.set_message(stage));
-    spinner.finish_and_clear();
-    let report = report?;
+    let report = progress::during("diagnosing", |spinner| {
+        appell::diagnose(&set, &options, |stage| spinner.set_message(stage))
+    })?;
     let about = "the missing effect, and how far it closes the gap";
     files::write(
         &written.place("gap.html", about),
@@ -133,12 +132,7 @@ fn rig(written: &mut Written<'_>) -> Result<String, Error> {
     let json = written.place("gap.json", about);
     files::write_json(&json, &appell::json::diagnosis(&report, None, &[]))?;
     let spec = shell(&set.spec.file);
-    let apply = Apply {
-        before: None,
-        command: format!(
-            "appell apply {spec} --report {}",
-            shell(&json.to_string_lossy())
-        ),
-    };
-    Ok(diagnosed::text(&report, None, &apply))
+    let json = shell(&json.to_string_lossy());
+    let apply = format!("appell apply {spec} --report {json}");
+    Ok(diagnosed::text(&report, None, &[apply]))
 }

@@ -7,7 +7,6 @@ use appell::{Source, files};
 use appell_codegen::c;
 use appell_codegen::program::FunctionKind;
 
-use crate::choice::{Choice, one_of};
 use crate::destinations::extension;
 use crate::engine;
 use crate::failure::Error;
@@ -31,11 +30,11 @@ pub(crate) struct Derive {
     /// Name of a shipped mechanism, or path of a spec or a robot file
     model: String,
     /// Output format [default: that of the extension of `--out`, else text]
-    #[arg(long, value_parser = one_of(&FORMATS))]
+    #[arg(long, value_enum)]
     format: Option<Output>,
     /// Last stage of the page. Each stage includes all earlier ones, except `equations`, the handout,
     /// which omits unnecessary quantities. Rust is always complete
-    #[arg(long, default_value = "equations", value_parser = one_of(&EXTENTS))]
+    #[arg(long, default_value = "equations", value_enum)]
     stage: Extent,
     /// Values in the steady motion, for `--stage linear`: `theta=0, dot(psi)=0`. States, rates and
     /// inputs that are not given stay symbolic
@@ -58,71 +57,58 @@ pub(crate) struct Derive {
     out: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The output formats.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Output {
-    Page(Format),
+    /// Unicode, for a terminal
+    Text,
+    /// A document for LaTeX
+    Latex,
+    /// A page for a browser
+    Html,
+    /// The module that a build script includes
     Rust,
+    /// C99: `--out NAME.c` writes source and header
     C,
+    /// CUDA C++, one source: functions, and kernels for many places, one thread each
     Cuda,
+    #[value(help = "Functions for NumPy, JAX, CasADi and SymPy alike")]
     Python,
+    /// The spec with `[joints]` expanded into other sections
     Spec,
 }
 
 impl Output {
     /// Whether it is a page for a reader, which has stages.
     const fn is_page(self) -> bool {
-        matches!(self, Self::Page(_))
+        matches!(self, Self::Text | Self::Latex | Self::Html)
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How far a page goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Extent {
-    Through(Stage),
+    /// Frames, constraints, velocities, accelerations
+    Kinematics,
+    /// Acceleration energy, mass matrix, bias
+    Energy,
+    /// Pseudo-forces, Appell's equations, accelerations
+    Equations,
+    /// Jacobians of the motion
+    Jacobians,
+    /// Constraint forces and outputs as well
+    All,
+    /// Only the linear equations about a steady motion: A, B, characteristic polynomial
     Linear,
 }
 
-const FORMATS: [Choice<Output>; 8] = [
-    (
-        "text",
-        "Unicode, for a terminal",
-        Output::Page(Format::Text),
-    ),
-    ("latex", "A document for LaTeX", Output::Page(Format::Latex)),
-    ("html", "A page for a browser", Output::Page(Format::Html)),
-    (
-        "rust",
-        "The module that a build script includes",
-        Output::Rust,
-    ),
-    (
-        "c",
-        "C99: `--out NAME.c` writes source and header",
-        Output::C,
-    ),
-    (
-        "cuda",
-        "CUDA C++, one source: functions, and kernels for many places, one thread each",
-        Output::Cuda,
-    ),
-    (
-        "python",
-        "Functions for NumPy, JAX, CasADi and SymPy alike",
-        Output::Python,
-    ),
-    (
-        "spec",
-        "The spec with `[joints]` expanded into other sections",
-        Output::Spec,
-    ),
-];
-
 /// Formats by file extension.
 const ENDS: [(&str, Output); 10] = [
-    ("txt", Output::Page(Format::Text)),
-    ("md", Output::Page(Format::Text)),
-    ("tex", Output::Page(Format::Latex)),
-    ("html", Output::Page(Format::Html)),
-    ("htm", Output::Page(Format::Html)),
+    ("txt", Output::Text),
+    ("md", Output::Text),
+    ("tex", Output::Latex),
+    ("html", Output::Html),
+    ("htm", Output::Html),
     ("rs", Output::Rust),
     ("c", Output::C),
     ("cu", Output::Cuda),
@@ -130,80 +116,66 @@ const ENDS: [(&str, Output); 10] = [
     ("toml", Output::Spec),
 ];
 
-const EXTENTS: [Choice<Extent>; 6] = [
-    (
-        "kinematics",
-        "Frames, constraints, velocities, accelerations",
-        Extent::Through(Stage::Kinematics),
-    ),
-    (
-        "energy",
-        "Acceleration energy, mass matrix, bias",
-        Extent::Through(Stage::Energy),
-    ),
-    (
-        "equations",
-        "Pseudo-forces, Appell's equations, accelerations",
-        Extent::Through(Stage::Equations),
-    ),
-    (
-        "jacobians",
-        "Jacobians of the motion",
-        Extent::Through(Stage::Jacobians),
-    ),
-    (
-        "all",
-        "Constraint forces and outputs as well",
-        Extent::Through(Stage::All),
-    ),
-    (
-        "linear",
-        "Only the linear equations about a steady motion: A, B, characteristic polynomial",
-        Extent::Linear,
-    ),
-];
-
 impl Derive {
     pub(super) fn run(&self) -> Result<(), Error> {
         let source = engine::source(&self.model)?;
         let format = self.format()?;
-        let linear = self.stage == Extent::Linear && format.is_page();
-        if !linear && !self.about.is_empty() {
-            let message = "--about needs --stage linear, as text, latex or html";
-            return Err(Error::Usage(message.to_owned()));
+        let is_c = matches!(format, Output::C | Output::Cuda);
+        let is_linear = self.stage == Extent::Linear && format.is_page();
+        let rules = [
+            (
+                !is_linear && !self.about.is_empty(),
+                "--about needs --stage linear, as text, latex or html",
+            ),
+            (
+                self.regressor && self.integrator,
+                "--integrator needs the rates, which a regressor does not include",
+            ),
+            (
+                !is_c && (self.float || self.integrator),
+                "--float and --integrator need --format c or cuda",
+            ),
+            (
+                self.regressor && format.is_page(),
+                "--regressor needs --format rust, c, cuda or python",
+            ),
+        ];
+        if let Some((_, message)) = rules.iter().find(|(is_broken, _)| *is_broken) {
+            return Err(Error::Usage((*message).to_owned()));
         }
-        if self.regressor && self.integrator {
-            let message = "--integrator needs the rates, which a regressor does not include";
-            return Err(Error::Usage(message.to_owned()));
+        let deriving = "deriving the equations of motion";
+        if format == Output::C {
+            let emitted = progress::during(deriving, |_| {
+                source.c(&self.c_options(self.functions(&source)?))
+            })?;
+            return self.write_c(&emitted);
         }
-        if !matches!(format, Output::C | Output::Cuda) && (self.float || self.integrator) {
-            let message = "--float and --integrator need --format c or cuda";
-            return Err(Error::Usage(message.to_owned()));
-        }
-        if self.regressor && format.is_page() {
-            let message = "--regressor needs --format rust, c, cuda or python";
-            return Err(Error::Usage(message.to_owned()));
-        }
-        let spinner = progress::spinner("deriving the equations of motion");
-        let functions = self.functions(&source);
-        let text = match (format, self.stage) {
-            (Output::C, _) => {
-                let emitted = source.c(&self.c_options(functions?));
-                spinner.finish_and_clear();
-                return self.write_c(&emitted?);
-            }
-            (Output::Cuda, _) => {
-                functions.and_then(|functions| source.cuda(&self.c_options(functions)))
-            }
-            (Output::Rust, _) => functions.and_then(|functions| source.rust(&functions)),
-            (Output::Python, _) => functions.and_then(|functions| source.python(&functions)),
-            (Output::Spec, _) => source.expanded(),
-            (Output::Page(format), Extent::Through(stage)) => source.derivation(stage, format),
-            (Output::Page(format), Extent::Linear) => source.linear_equations(&self.about, format),
-        };
-        spinner.finish_and_clear();
-        files::write(self.out.as_deref().unwrap_or("-".as_ref()), &text?)?;
+        let text = progress::during(deriving, |_| self.text(&source, format))?;
+        files::write(self.out.as_deref().unwrap_or("-".as_ref()), &text)?;
         Ok(())
+    }
+
+    /// The derivation as one text.
+    fn text(&self, source: &Source, format: Output) -> Result<String, appell::Error> {
+        let functions = || self.functions(source);
+        let format = match format {
+            Output::C | Output::Cuda => return source.cuda(&self.c_options(functions()?)),
+            Output::Rust => return source.rust(&functions()?),
+            Output::Python => return source.python(&functions()?),
+            Output::Spec => return source.expanded(),
+            Output::Text => Format::Text,
+            Output::Latex => Format::Latex,
+            Output::Html => Format::Html,
+        };
+        let stage = match self.stage {
+            Extent::Kinematics => Stage::Kinematics,
+            Extent::Energy => Stage::Energy,
+            Extent::Equations => Stage::Equations,
+            Extent::Jacobians => Stage::Jacobians,
+            Extent::All => Stage::All,
+            Extent::Linear => return source.linear_equations(&self.about, format),
+        };
+        source.derivation(stage, format)
     }
 
     fn functions(&self, source: &Source) -> Result<Vec<FunctionKind>, appell::Error> {
@@ -257,7 +229,7 @@ impl Derive {
             ends.map(|(_, format)| *format)
         });
         match (self.format, promised) {
-            (format, None) => Ok(format.unwrap_or(Output::Page(Format::Text))),
+            (format, None) => Ok(format.unwrap_or(Output::Text)),
             (None, Some(Some(promised))) => Ok(promised),
             (Some(format), Some(Some(promised))) if format == promised => Ok(format),
             // An unknown extension implies no format.

@@ -6,15 +6,14 @@ use std::str::FromStr;
 use appell::diagnosis::Library;
 use appell::fleet::{self, Fleet, Rig};
 use appell_gap::diagnose::{Limit, Options};
-use appell_recordings::{DataSet, Spec};
+use appell_recordings::DataSet;
 use serde_json::Value;
 
-use crate::diagnosed::{self, Apply};
+use crate::diagnosed;
 use crate::failure::Error;
 use crate::output::{self, shell};
 use crate::progress;
 use appell::files;
-use appell::source::Source;
 
 /// Default file name of the proposed experiment.
 const EXPERIMENT: &str = "experiment.csv";
@@ -125,24 +124,20 @@ impl Diagnose {
             [] => None,
             paths => Some(appell::recording::read(paths, self.model.as_deref())?),
         };
-        let library = self.library()?;
+        let library = Library::of(&self.without, &self.effects)?;
         let replaced = &library.warnings;
-        let spinner = progress::spinner("reading");
         let options = Options {
             pictures: self.html.is_some(),
             limits: self.limits(&set)?,
-            alternatives: self.alternatives()?,
+            alternatives: appell::recording::specs(&self.alternative)?,
             horizon: self.horizon()?,
             tolerance: self.tolerance,
             present: Vec::new(),
         };
-        let stage = |stage| spinner.set_message(stage);
-        let report = match &before {
-            Some(before) => library.against(before, &set, &options, stage),
-            None => library.diagnose(&set, &options, stage),
-        };
-        spinner.finish_and_clear();
-        let report = report?;
+        let report = progress::during("reading", |spinner| {
+            let stage = |stage| spinner.set_message(stage);
+            library.diagnose(before.as_ref(), &set, &options, stage)
+        })?;
         let warnings = appell::recording::warnings(&set);
         let mut next = None;
         if let Some(experiment) = &report.experiment {
@@ -172,14 +167,6 @@ impl Diagnose {
         output::print_beside(&set.named(&text), &outputs)
     }
 
-    fn library(&self) -> Result<Library, Error> {
-        let mut library = Library::shipped()?;
-        for kind in &self.without {
-            library = library.without(kind)?;
-        }
-        Ok(library.with(&self.effects)?)
-    }
-
     /// Several rigs: a report for each, and one table.
     fn fleet(&self) -> Result<(), Error> {
         let given = [
@@ -201,7 +188,7 @@ impl Diagnose {
         }
         let folder = PathBuf::from(REPORTS);
         let processors = std::thread::available_parallelism().map_or(1, usize::from);
-        let library = self.library()?;
+        let library = Library::of(&self.without, &self.effects)?;
         let fleet = Fleet {
             folders: &self.data,
             model: self.model.as_deref(),
@@ -252,8 +239,9 @@ impl Diagnose {
         free.map(|name| report.with_file_name(name))
     }
 
-    /// The command that writes the diagnosed effect into the spec, after the one that writes the report.
-    fn apply(&self, set: &DataSet) -> Apply {
+    /// The command that writes the diagnosed effect into the spec, after the one that writes the report if none was
+    /// written.
+    fn apply(&self, set: &DataSet) -> Vec<String> {
         let mut shipped = appell_models::ALL.iter();
         let is_shipped = shipped.any(|shipped| shipped.spec == set.spec.text);
         let model = match &self.model {
@@ -262,30 +250,17 @@ impl Diagnose {
             None => &set.spec.file,
         };
         let model = shell(model);
-        let apply = |report: &Path| {
-            let report = shell(&report.to_string_lossy());
-            format!("appell apply {model} --report {report}")
-        };
+        let apply = |report: &str| format!("appell apply {model} --report {report}");
         let written = self.json.as_deref();
         if let Some(report) = written.filter(|path| !files::is_stdout(path)) {
-            return Apply {
-                before: None,
-                command: apply(report),
-            };
+            return vec![apply(&shell(&report.to_string_lossy()))];
         }
         let data = self.data.iter().map(|path| shell(&path.to_string_lossy()));
         let data = data.collect::<Vec<_>>().join(" ");
-        let given = self
-            .model
-            .as_ref()
-            .map(|model| format!("{} ", shell(model)));
+        let given = (self.model.as_ref()).map(|model| format!("{} ", shell(model)));
         let given = given.unwrap_or_default();
-        Apply {
-            before: Some(format!(
-                "appell diagnose {given}--data {data} --json gap.json"
-            )),
-            command: apply(Path::new("gap.json")),
-        }
+        let diagnose = format!("appell diagnose {given}--data {data} --json gap.json");
+        vec![diagnose, apply("gap.json")]
     }
 
     /// A note if an existing file was kept.
@@ -305,15 +280,6 @@ impl Diagnose {
             ))),
             horizon => Ok(horizon),
         }
-    }
-
-    /// The other specs.
-    fn alternatives(&self) -> Result<Vec<Spec>, Error> {
-        let specs = self
-            .alternative
-            .iter()
-            .map(|model| Ok(Spec::from(&Source::find(model)?)));
-        specs.collect()
     }
 
     /// The limits in SI.

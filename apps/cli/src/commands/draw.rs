@@ -32,10 +32,9 @@ pub(crate) struct Draw {
 impl Draw {
     pub(super) fn run(&self) -> Result<(), Error> {
         let source = engine::source(&self.model)?;
-        let spinner = progress::spinner("deriving the equations of motion");
-        let svg = source.drawing_at(&self.set, &self.initial);
-        spinner.finish_and_clear();
-        let svg = svg?;
+        let svg = progress::during("deriving the equations of motion", |_| {
+            source.drawing_at(&self.set, &self.initial)
+        })?;
         let out = match &self.out {
             Some(out) => out.clone(),
             None => format!("{}.svg", source.mechanism()?.name).into(),

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use appell::effects::{self, Example};
-use appell::files;
 use serde_json::json;
 
 use crate::failure::Error;
@@ -43,10 +42,10 @@ impl Effects {
         let examples = effects.into_iter();
         let examples = examples.map(|effect| Example::new(effect, self.model.as_deref()));
         let examples = examples.collect::<Result<Vec<_>, _>>()?;
-        if let Some(path) = &self.json {
+        output::json(self.json.as_deref(), || {
             let entries: Vec<_> = examples.iter().map(Example::json).collect();
-            files::write_json(path, &json!({ "schema": "effects/1", "effects": entries }))?;
-        }
+            json!({ "schema": "effects/1", "effects": entries })
+        })?;
         if self.name.is_none() {
             return output::print_beside(&overview, &[&self.json]);
         }

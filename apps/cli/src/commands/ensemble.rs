@@ -66,12 +66,14 @@ impl EnsembleCommand {
             let message = "`--out` is a folder: rows and figures do not go to standard output";
             return Err(Error::Usage(message.to_owned()));
         }
-        let spinner = progress::spinner("deriving the equations of motion");
-        let ensemble = Ensemble::from_file(&self.study);
-        spinner.finish_and_clear();
+        let ensemble = progress::during("deriving the equations of motion", |_| {
+            Ensemble::from_file(&self.study)
+        })?;
         let ensemble = match self.device {
-            Device::Cpu => ensemble?,
-            Device::Cuda => on_card(ensemble?)?,
+            Device::Cpu => ensemble,
+            Device::Cuda => {
+                progress::during("compiling for the graphics card", |_| ensemble.on_card())?
+            }
         };
         ensemble.chunks(self.chunk)?;
         let store = store_at(&self.out)?;
@@ -98,10 +100,8 @@ impl EnsembleCommand {
             ));
         }
         store.tidy().map_err(appell::Error::computation)?;
-        let spinner = progress::spinner("computing statistics");
-        let summary = ensemble.summary(store);
-        spinner.finish_and_clear();
-        self.tell(&ensemble, store, &summary?)
+        let summary = progress::during("computing statistics", |_| ensemble.summary(store))?;
+        self.tell(&ensemble, store, &summary)
     }
 
     /// Runs the missing chunks until Ctrl-C, with a progress bar.
@@ -138,24 +138,15 @@ impl EnsembleCommand {
         go_on();
         let mut ended = Ended::Done;
         if cases > 0 {
-            let bar = progress::cases(cases, "cases");
-            let done = |cases| bar.inc(cases);
-            let watch = Watch {
-                go_on: &go_on,
-                done: &done,
-            };
-            ended = ensemble.fill(store, &missing, running, watch)?;
-            bar.finish_and_clear();
+            ended = under_bar(cases, "cases", &go_on, |watch| {
+                ensemble.fill(store, &missing, running, watch)
+            })?;
         }
         if !replicates.is_empty() && ended == Ended::Done {
-            let bar = progress::cases(replicates.len() as u64, "replicates of the rare event");
-            let done = |replicates| bar.inc(replicates);
-            let watch = Watch {
-                go_on: &go_on,
-                done: &done,
-            };
-            ended = ensemble.fill_replicates(store, &replicates, running, watch)?;
-            bar.finish_and_clear();
+            let (count, kind) = (replicates.len() as u64, "replicates of the rare event");
+            ended = under_bar(count, kind, &go_on, |watch| {
+                ensemble.fill_replicates(store, &replicates, running, watch)
+            })?;
         }
         Ok(ended)
     }
@@ -194,21 +185,25 @@ impl EnsembleCommand {
         for figure in ensemble::figures(&about) {
             write(&format!("{}.svg", figure.name), figure.svg)?;
         }
-        if let Some(path) = &self.json {
-            files::write_json(path, &told)?;
-        }
+        output::json(self.json.as_deref(), || told)?;
         let page = self.out.join("report.html");
         let text = format!("{}\nfigures: {}\n", ensemble::text(&about), page.display());
         output::print_beside(&text, &[&self.json])
     }
 }
 
-/// The motions compiled for the graphics card.
-fn on_card(ensemble: Ensemble) -> Result<Ensemble, Error> {
-    let spinner = progress::spinner("compiling for the graphics card");
-    let ensemble = ensemble.on_card();
-    spinner.finish_and_clear();
-    Ok(ensemble?)
+/// Runs with a progress bar.
+fn under_bar(
+    count: u64,
+    kind: &str,
+    go_on: &(dyn Fn() -> bool + Sync),
+    run: impl FnOnce(Watch<'_>) -> Result<Ended, appell::Error>,
+) -> Result<Ended, Error> {
+    let bar = progress::cases(count, kind);
+    let done = |some| bar.inc(some);
+    let ended = run(Watch { go_on, done: &done })?;
+    bar.finish_and_clear();
+    Ok(ended)
 }
 
 /// Whether a path is the address of an object store.

@@ -42,7 +42,7 @@ impl Evaluate {
         let (mut singular, mut count) = (Vec::new(), 0_usize);
         files::write_with(&self.json, |to| {
             evaluation.write(cases.iter(), to, |index, case, values| {
-                if !values.is_finite() {
+                if !values.is_finite {
                     count += 1;
                     if count <= MOST_SHOWN {
                         singular.push(describe(index, case, &model.info().states));

@@ -63,16 +63,15 @@ impl Export {
             )));
         }
         let source = engine::source(&self.model)?;
-        let spinner = progress::spinner("deriving and compiling the equations of motion");
-        let fmu = source.fmu(&Options {
+        let options = Options {
             sources_only: self.sources_only,
             inputs: match self.interpolation {
                 WithinStep::Hold => InputsOfStep::Held,
                 WithinStep::Linear => InputsOfStep::Lines,
             },
-        });
-        spinner.finish_and_clear();
-        let fmu = fmu?;
+        };
+        let compiling = "deriving and compiling the equations of motion";
+        let fmu = progress::during(compiling, |_| source.fmu(&options))?;
         let file = self.out.clone();
         let file = file.unwrap_or_else(|| PathBuf::from(format!("{}.fmu", fmu.name)));
         files::write_with(&file, |to| to.write_all(&fmu.bytes))?;

@@ -69,7 +69,6 @@ impl Identify {
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
         appell::recording::check(&set)?;
         let model = engine::model_of(appell::recording::source(&set))?;
-        let spinner = progress::spinner("reading");
         let options = Options {
             free: self.free.clone(),
             additional: self.also.clone(),
@@ -81,13 +80,13 @@ impl Identify {
             },
             rough: false,
         };
-        let answer = model.identify(&set, &options, |stage| spinner.set_message(stage));
-        spinner.finish_and_clear();
-        let answer = answer?;
-        if let Some(path) = &self.json {
+        let answer = progress::during("reading", |spinner| {
+            model.identify(&set, &options, |stage| spinner.set_message(stage))
+        })?;
+        output::json(self.json.as_deref(), || {
             let own = appell::json::identification(&set, &answer);
-            files::write_json(path, &appell::json::in_names_of(&set, own))?;
-        }
+            appell::json::in_names_of(&set, own)
+        })?;
         if let Some(path) = &self.plot {
             picture::write(path, &identification::figure(&set, &answer).to_svg())?;
         }

@@ -162,27 +162,17 @@ impl Import {
 
 /// `robot` is the file that does not need to be named.
 fn left_out(one: &LeftOut, robot: &str) -> String {
-    let lines: Vec<String> = one
-        .lines
-        .iter()
-        .take(MOST_LINES)
-        .map(ToString::to_string)
-        .collect();
-    let more = one.lines.len().saturating_sub(MOST_LINES);
-    let more = if more == 0 {
-        String::new()
-    } else {
-        format!(" and {more} more")
+    let lines = one.lines.iter().take(MOST_LINES).map(ToString::to_string);
+    let lines = lines.collect::<Vec<_>>().join(", ");
+    let more = match one.lines.len().saturating_sub(MOST_LINES) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
     };
     let plural = if one.lines.len() == 1 { "" } else { "s" };
-    let lines = lines.join(", ");
-    let of = if one.file == robot {
-        String::new()
-    } else {
-        format!(" of {}", one.file)
+    let of = match one.file.as_str() {
+        file if file == robot => String::new(),
+        file => format!(" of {file}"),
     };
-    let effect = one
-        .effect
-        .map_or(String::new(), |effect| format!(" ({effect})"));
+    let effect = (one.effect).map_or(String::new(), |effect| format!(" ({effect})"));
     format!("  {}: line{plural} {lines}{more}{of}{effect}", one.what)
 }

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use appell_models::{ALL, Shipped};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::failure::Error;
 use crate::{output, progress};
 use appell::robot::{self, Format, Imported, Options};
 use appell::{check, files};
+use appell_report::row;
 use appell_report::text::table;
 
 /// Lists the shipped mechanisms, or the robot files of a folder.
@@ -42,14 +43,15 @@ impl List {
             let message = "no file ends in `.urdf`, or in `.xml` and begins with `<mujoco`";
             return Err(appell::Error::data(folder, message).into());
         }
-        let heading = ["file", "robot", "format", "bodies", "joints", "remarks"];
-        let mut rows = vec![heading.map(str::to_owned).to_vec()];
+        let mut rows = vec![row![
+            "file", "robot", "format", "bodies", "joints", "remarks"
+        ]];
         let mut entries = Vec::new();
         let bar = progress::cases(found.len() as u64, "robot files");
         for (path, format) in found {
             let robot = robot::read(&path, Some(folder), &Options::default());
             let file = path.strip_prefix(folder).unwrap_or(&path).display();
-            rows.push(row(file.to_string(), format, &robot));
+            rows.push(row_of(&file.to_string(), format, &robot));
             let file = path.to_string_lossy();
             entries.push(match &robot {
                 Ok(robot) => appell::json::robot(&file, robot),
@@ -75,16 +77,11 @@ impl List {
                 return Ok(());
             }
         }
-        let heading = ["mechanism", "dof", "constraints", "title"];
-        let mut rows = vec![heading.map(str::to_owned).to_vec()];
+        let mut rows = vec![row!["mechanism", "dof", "constraints", "title"]];
         for shipped in ALL {
             let info = shipped.model.info();
-            rows.push(vec![
-                shipped.name.to_owned(),
-                info.speeds.to_string(),
-                constraints(shipped)?,
-                info.title.to_string(),
-            ]);
+            let constraints = constraints(shipped)?;
+            rows.push(row![shipped.name, info.speeds, constraints, info.title]);
         }
         if let Some(columns) = output::columns() {
             fit(&mut rows, columns);
@@ -95,8 +92,8 @@ impl List {
 }
 
 /// The row of a robot file.
-fn row(file: String, format: Format, robot: &Result<Imported, appell::Error>) -> Vec<String> {
-    let format = format.word().to_owned();
+fn row_of(file: &str, format: Format, robot: &Result<Imported, appell::Error>) -> Vec<String> {
+    let format = format.word();
     match robot {
         Ok(robot) => {
             let findings = robot
@@ -108,16 +105,21 @@ fn row(file: String, format: Format, robot: &Result<Imported, appell::Error>) ->
                 1 => "1 warning".to_owned(),
                 count => format!("{count} warnings"),
             };
-            let [bodies, joints] = [robot.bodies, robot.joints].map(|count| count.to_string());
-            vec![file, robot.name.clone(), format, bodies, joints, remarks]
+            row![
+                file,
+                robot.name,
+                format,
+                robot.bodies,
+                robot.joints,
+                remarks
+            ]
         }
         Err(error) => {
             let told = error.to_string();
             // Warnings may precede the error.
             let wrong = told.lines().find(|line| line.starts_with("error["));
-            let first = wrong.or(told.lines().next()).unwrap_or_default().to_owned();
-            let none = || "-".to_owned();
-            vec![file, none(), format, none(), none(), first]
+            let first = wrong.or(told.lines().next()).unwrap_or_default();
+            row![file, "-", format, "-", "-", first]
         }
     }
 }
@@ -177,14 +179,8 @@ fn constraints(shipped: &Shipped) -> Result<String, Error> {
 
 fn entry(shipped: &Shipped) -> Result<Value, Error> {
     let info = shipped.model.info();
-    let names = |list: &[appell_runtime::model::Quantity]| -> Vec<String> {
-        list.iter()
-            .map(|quantity| quantity.name.to_string())
-            .collect()
-    };
-    let costs: serde_json::Map<String, Value> = shipped
-        .costs
-        .iter()
+    let costs = shipped.costs.iter();
+    let costs: Map<String, Value> = costs
         .map(|(function, cost)| ((*function).to_owned(), json!(cost)))
         .collect();
     let constraints: Vec<Value> = kinds(shipped)?
@@ -198,11 +194,11 @@ fn entry(shipped: &Shipped) -> Result<Value, Error> {
         "degrees_of_freedom": info.speeds,
         "constraints": constraints,
         "constraint_rows": info.constraint_rows,
-        "pseudo_velocities": names(info.speed_quantities()),
-        "coordinates": names(info.coordinate_quantities()),
-        "inputs": names(&info.inputs[..info.declared_inputs]),
-        "parameters": names(&info.parameters),
-        "outputs": names(&info.outputs),
+        "pseudo_velocities": appell::json::names(info.speed_quantities()),
+        "coordinates": appell::json::names(info.coordinate_quantities()),
+        "inputs": appell::json::names(&info.inputs[..info.declared_inputs]),
+        "parameters": appell::json::names(&info.parameters),
+        "outputs": appell::json::names(&info.outputs),
         "operations": costs,
     }))
 }
@@ -214,11 +210,7 @@ mod tests {
     #[test]
     fn the_list_fits_the_terminal() {
         let title = "a title of forty letters, more or less";
-        let row = || {
-            ["mechanism", "3", "rolling", title]
-                .map(str::to_owned)
-                .to_vec()
-        };
+        let row = || row!["mechanism", "3", "rolling", title];
         for columns in [20, 50, 60, 200] {
             let mut rows = vec![row(), row()];
             fit(&mut rows, columns);

@@ -12,7 +12,10 @@ Examples:
   appell lsp")]
 pub(crate) struct Lsp {}
 
-pub(super) fn run() -> Result<(), Error> {
-    let served = appell_lsp::serve_stdio();
-    served.map_err(|cause| Error::Computation(format!("the language server: {cause}")))
+impl Lsp {
+    pub(super) fn run(self) -> Result<(), Error> {
+        let Self {} = self;
+        let served = appell_lsp::serve_stdio();
+        served.map_err(|cause| Error::Computation(format!("the language server: {cause}")))
+    }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use appell::{capture, files};
+use appell::capture;
 
 use crate::failure::Error;
 use crate::output;
@@ -35,9 +35,7 @@ impl Motion {
     pub(super) fn run(&self) -> Result<(), Error> {
         let converted = capture::convert(&self.skeleton, &self.captures)?;
         let manifest = converted.write(&self.out)?;
-        if let Some(path) = &self.json {
-            files::write_json(path, &appell::json::capture(&converted))?;
-        }
+        output::json(self.json.as_deref(), || converted.to_json())?;
         let skeleton = &converted.skeleton;
         let mut text = format!(
             "{}\n  {} bodies, {} segments of {} kg by {}\n  derivatives over {} frames\n",

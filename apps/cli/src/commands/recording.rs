@@ -58,9 +58,7 @@ impl Recording {
             )));
         }
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
-        if let Some(path) = &self.json {
-            files::write_json(path, &appell::json::recording(&set))?;
-        }
+        output::json(self.json.as_deref(), || appell::json::recording(&set))?;
         output::print_beside(&text(&set), &[&self.json])
     }
 

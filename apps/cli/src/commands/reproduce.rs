@@ -112,9 +112,7 @@ impl Reproduce {
             unexpected: count(&|claim| !claim.as_expected),
             sections: &sections,
         };
-        if let Some(path) = &self.json {
-            files::write_json(path, &book)?;
-        }
+        output::json(self.json.as_deref(), || &book)?;
         let text = format!(
             "{title}\n  {}\n  {} errata\n  {}\n",
             tally.words(),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::failure::Error;
 use appell::setup::Assignment;
-use appell::{Law, Model, Motion, Simulated, files};
+use appell::{Law, Model, Motion, Remarks, Simulated, files};
 use appell_report::figure::Figure;
 use appell_report::text::number;
 use appell_runtime::Trajectory;
@@ -191,37 +191,11 @@ impl Simulate {
             trajectory,
             failure,
             undefined,
-            undriven,
-            held_from,
-            smooth,
-            begins,
-            differs,
+            remarks,
         } = simulated(&model, &motion)?;
         let failure = failure.or(undefined);
-
-        if let Some(from) = held_from {
-            note(&format!(
-                "the recorded inputs end at {} s; their last values are held from there on",
-                number(from)
-            ));
-        }
-        if let Some(begins) = begins {
-            note(&format!(
-                "the run begins at {begins}; to compare with it, begin there too by --initial"
-            ));
-        }
-        for difference in differs {
-            note(&format!(
-                "in the run {difference}, which the motion leaves out; --set gives a parameter another value"
-            ));
-        }
-        if let Some(remark) = smooth {
-            note(&format!("{remark} after --interpolation"));
-        }
-        for [wanted, name] in trajectory.renamed() {
-            note(&format!(
-                "the spec uses the name `{wanted}`; the computed column is `{name}`"
-            ));
+        for text in notes(&remarks, &trajectory) {
+            note(&text);
         }
         if let Some(path) = &self.csv {
             write_csv(path, &trajectory)?;
@@ -233,11 +207,11 @@ impl Simulate {
             let page = model.page(&trajectory, failure.as_deref())?;
             files::write(path, &page)?;
         }
-        if let Some(path) = &self.json {
-            files::write_json(path, &appell::json::motion(&trajectory, failure.as_deref()))?;
-        }
+        output::json(self.json.as_deref(), || {
+            appell::json::motion(&trajectory, failure.as_deref())
+        })?;
         let mut text = summary::text(&trajectory);
-        if undriven && failure.is_none() && summary::rests(&trajectory) {
+        if remarks.undriven && failure.is_none() && summary::rests(&trajectory) {
             text += &hint(model.info(), &self.initial);
         }
         output::print_beside(&text, &[&self.csv, &self.plot, &self.html, &self.json])?;
@@ -279,6 +253,26 @@ impl Simulate {
             ..Validity::default()
         })
     }
+}
+
+/// What there is to say about the inputs and the columns of a motion.
+fn notes(remarks: &Remarks, trajectory: &Trajectory) -> Vec<String> {
+    let held = remarks.held_from.map(|from| {
+        let from = number(from);
+        format!("the recorded inputs end at {from} s; their last values are held from there on")
+    });
+    let begins = remarks.begins.as_ref().map(|begins| {
+        format!("the run begins at {begins}; to compare with it, begin there too by --initial")
+    });
+    let differs = remarks.differs.iter().map(|difference| {
+        format!("in the run {difference}, which the motion leaves out; --set gives a parameter another value")
+    });
+    let smooth = (remarks.smooth.as_ref()).map(|remark| format!("{remark} after --interpolation"));
+    let renamed = trajectory.renamed().into_iter().map(|[wanted, name]| {
+        format!("the spec uses the name `{wanted}`; the computed column is `{name}`")
+    });
+    let single = held.into_iter().chain(begins);
+    single.chain(differs).chain(smooth).chain(renamed).collect()
 }
 
 /// Proposes a coordinate, or a pseudo-velocity where a coordinate did not set anything in motion.

@@ -1,17 +1,16 @@
 //! `appell stability`
 
-use appell_analysis::Stability;
+use appell_analysis::{Branch, Stability};
 use appell_report::figure::Figure;
 
 mod plane;
 
 use plane::{Grid, Plane};
 
-use super::steady::write;
 use crate::failure::Error;
-use crate::motions::{self, Question, text};
-use crate::output;
-use appell::steady::{Answer, Resolved};
+use crate::motions::{Question, text};
+use appell::steady::Resolved;
+use appell_report::row;
 use appell_report::text::table;
 
 /// Eigenvalues of steady motions, and where their stability changes.
@@ -54,22 +53,11 @@ impl StabilityCommand {
             if let Some(chart) = &self.chart {
                 return self.draw(asked, &chart.axes(setup, self.grid)?);
             }
-            let answer = motions::answer(asked)?;
-            let text = text::structure(asked)
-                + &match &answer {
-                    Answer::Motions(motions) => {
-                        let each = motions.iter().map(|(_, stability)| modes(asked, stability));
-                        text::motions(asked, motions) + &each.collect::<String>()
-                    }
-                    Answer::Branches(branches) => text::branches(asked, branches),
-                };
-            write(&self.question, asked, &answer, |along, branches| {
+            let figure = |along, branches: &[Branch]| {
                 Figure::of_eigenvalues(asked.problem.model().info(), along, branches)
-            })?;
-            output::print_beside(
-                &text,
-                &[&self.question.csv, &self.question.json, &self.question.plot],
-            )
+            };
+            self.question
+                .answer(asked, |stability| modes(asked, stability), figure)
         })
     }
 }
@@ -102,7 +90,7 @@ fn modes(asked: &Resolved<'_>, stability: &Stability) -> String {
         } else {
             value
         };
-        rows.push(vec![value, "1/s".to_owned(), leading.join(", ")]);
+        rows.push(row![value, "1/s", leading.join(", ")]);
     }
     if stability.zeros == 0 {
         return format!("eigenvalues\n{}", table(&rows, 0..1));
@@ -115,6 +103,6 @@ fn modes(asked: &Resolved<'_>, stability: &Stability) -> String {
         stability.family,
         if stability.family == 1 { "" } else { "s" },
     );
-    rows.push(vec!["0".to_owned(), "1/s".to_owned(), neutral]);
+    rows.push(row!["0", "1/s", neutral]);
     format!("eigenvalues\n{}", table(&rows, 0..1))
 }

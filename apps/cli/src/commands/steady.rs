@@ -1,14 +1,10 @@
 //! `appell steady`
 
-use appell_analysis::{Branch, Term};
+use appell_analysis::Branch;
 use appell_report::figure::Figure;
 
 use crate::failure::Error;
-use crate::motions::{self, Question, text};
-use crate::output;
-use crate::picture;
-use appell::files;
-use appell::steady::{Answer, Resolved, export};
+use crate::motions::Question;
 
 /// Finds steady motions, that is, relative equilibria, alone or along a quantity.
 ///
@@ -31,41 +27,11 @@ impl Steady {
     pub(super) fn run(&self) -> Result<(), Error> {
         self.question.needs_abscissa()?;
         self.question.with(|asked, _| {
-            let answer = motions::answer(asked)?;
-            let text = text::structure(asked)
-                + &match &answer {
-                    Answer::Motions(motions) => text::motions(asked, motions),
-                    Answer::Branches(branches) => text::branches(asked, branches),
-                };
-            write(&self.question, asked, &answer, |along, branches| {
+            let figure = |along, branches: &[Branch]| {
                 let model = asked.problem.model();
                 Figure::of_branches(model, along, &asked.terms(), branches)
-            })?;
-            output::print_beside(
-                &text,
-                &[&self.question.csv, &self.question.json, &self.question.plot],
-            )
+            };
+            self.question.answer(asked, |_| String::new(), figure)
         })
     }
-}
-
-/// Writes the requested files.
-pub(super) fn write(
-    question: &Question,
-    asked: &Resolved<'_>,
-    answer: &Answer,
-    figure: impl Fn(Term, &[Branch]) -> Figure,
-) -> Result<(), Error> {
-    if let Some(path) = &question.json {
-        files::write_json(path, &appell::json::steady(asked, answer))?;
-    }
-    if let Some(path) = &question.csv {
-        files::write_with(path, |to| export::csv(asked, answer, to))?;
-    }
-    if let (Some(path), Answer::Branches(branches), Some((along, _))) =
-        (&question.plot, answer, asked.along)
-    {
-        picture::write(path, &figure(along, branches).to_svg())?;
-    }
-    Ok(())
 }

@@ -9,6 +9,7 @@ use appell_spectra::spectrum::Complex;
 
 use appell::steady::Resolved;
 use appell::steady::export::in_words as verdict;
+use appell_report::row;
 use appell_report::text::{number, table};
 
 /// Largest number of motions side by side.
@@ -179,29 +180,19 @@ pub(crate) fn branches(asked: &Resolved<'_>, branches: &[Branch]) -> String {
         let mut rows = Vec::new();
         let first = branch.points.first().map(|point| point.stability.verdict);
         if let Some(first) = first {
-            rows.push(vec![
-                "beginning".to_owned(),
-                String::new(),
-                verdict(first).to_owned(),
-            ]);
+            rows.push(row!["beginning", "", verdict(first)]);
         }
         for (k, special) in branch.specials.iter().enumerate() {
             let next = branch.specials.get(k + 1).map(|next| next.after);
-            let behind = branch
-                .points
-                .get(special.after + 1)
-                .map(|p| p.stability.verdict);
-            let before = branch
-                .points
-                .get(special.after)
-                .map(|p| p.stability.verdict);
+            let at = |place: usize| branch.points.get(place).map(|p| p.stability.verdict);
+            let (before, behind) = (at(special.after), at(special.after + 1));
             let mut what = event(asked, special);
             if let Some(behind) = behind.filter(|_| behind != before && next != Some(special.after))
             {
                 let _ = write!(what, "; {} beyond", verdict(behind));
             }
             let value = quantity.to_unit(special.motion.value);
-            rows.push(vec![exact(value), quantity.unit.to_string(), what]);
+            rows.push(row![exact(value), quantity.unit, what]);
         }
         text += &table(&rows, 0..1);
     }

@@ -8,14 +8,12 @@ use appell_report::figure::Map;
 
 use super::StabilityCommand;
 use crate::failure::Error;
-use crate::motions::{self, text};
-use crate::output;
-use crate::picture;
+use crate::motions::text;
+use crate::progress;
+use appell::Field;
 use appell::setup::{Setup, listed};
-use appell::steady::Span;
 use appell::steady::regions::{self, Shown};
-use appell::steady::{Resolved, chart};
-use appell::{Field, files};
+use appell::steady::{Resolved, Span, chart};
 
 /// `X=FROM..TO,Y=FROM..TO` as it was given.
 #[derive(Debug, Clone)]
@@ -69,19 +67,14 @@ impl Plane {
 impl StabilityCommand {
     /// Computes the chart, prints a summary and writes its files.
     pub(super) fn draw(&self, asked: &Resolved<'_>, axes: &[Axis; 2]) -> Result<(), Error> {
-        let chart = motions::chart(asked, *axes)?;
-        let question = &self.question;
-        if let Some(path) = &question.json {
-            files::write_json(path, &appell::json::chart(asked, &chart))?;
-        }
-        if let Some(path) = &question.csv {
-            files::write_with(path, |to| chart::csv(asked, &chart, to))?;
-        }
-        if let Some(path) = &question.plot {
-            picture::write(path, &map(asked, &chart).to_svg())?;
-        }
-        let text = text::structure(asked) + &text(asked, &chart);
-        output::print_beside(&text, &[&question.csv, &question.json, &question.plot])
+        let chart = progress::during("computing the chart", |_| asked.chart(*axes))?;
+        self.question.write(
+            asked,
+            &text(asked, &chart),
+            || appell::json::chart(asked, &chart),
+            |to| chart::csv(asked, &chart, to),
+            || Some(map(asked, &chart).to_svg()),
+        )
     }
 }
 

@@ -25,10 +25,13 @@ pub use page::page;
 /// A result, or the reason why a computation failed.
 pub(crate) type Result<T> = std::result::Result<T, Error>;
 
+/// What makes a section, from what the parts of a book share.
+type Make<C> = fn(C) -> Result<Section>;
+
 /// Parts of a book, made from what they share after some steps that are done; `making` is called with the current part
 /// and the progress.
 fn made<C: Copy>(
-    parts: &[(&str, fn(C) -> Result<Section>)],
+    parts: &[(&str, Make<C>)],
     shared: C,
     done: usize,
     mut making: impl FnMut(&str, usize, usize),

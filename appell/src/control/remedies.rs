@@ -1,9 +1,9 @@
 //! Remedies for a failed design, in the names of the mechanism.
 
+use appell_analysis::control::lqr::RiccatiError;
 use appell_analysis::control::operating_point::{MotionEquations, OperatingPointError};
 use appell_analysis::control::placement::PlacementError;
 use appell_analysis::control::reduction::ReductionError;
-use appell_analysis::control::riccati::RiccatiError;
 use appell_report::text::number;
 use nalgebra::Complex;
 

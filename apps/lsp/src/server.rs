@@ -82,17 +82,17 @@ pub fn serve(connection: &Connection) -> std::io::Result<()> {
 /// The protocol's error code, and the reason.
 type Refusal = (i32, String);
 
-fn refused(code: ErrorCode, reason: impl ToString) -> Refusal {
+fn refused(code: ErrorCode, reason: &impl ToString) -> Refusal {
     (code as i32, reason.to_string())
 }
 
 fn read<T: DeserializeOwned>(params: Value) -> Result<T, Refusal> {
-    from_value(params).map_err(|error| refused(ErrorCode::InvalidParams, error))
+    from_value(params).map_err(|error| refused(ErrorCode::InvalidParams, &error))
 }
 
 fn written(result: impl Serialize) -> Result<Value, Refusal> {
     let result = serde_json::to_value(result);
-    result.map_err(|error| refused(ErrorCode::InternalError, error))
+    result.map_err(|error| refused(ErrorCode::InternalError, &error))
 }
 
 struct Server {
@@ -111,7 +111,7 @@ impl Server {
         let answer = catch_unwind(AssertUnwindSafe(|| self.in_turn(&method, params)));
         let answer = answer.unwrap_or_else(|_| {
             let reason = "a mistake in the language server";
-            Err(refused(ErrorCode::InternalError, reason))
+            Err(refused(ErrorCode::InternalError, &reason))
         });
         let answer = match answer {
             Ok(result) => Response::new_ok(id, result),
@@ -130,7 +130,7 @@ impl Server {
             }
             (Phase::New, _) => {
                 let reason = "`initialize` comes first";
-                Err(refused(ErrorCode::ServerNotInitialized, reason))
+                Err(refused(ErrorCode::ServerNotInitialized, &reason))
             }
             (Phase::Serving, Shutdown::METHOD) => {
                 self.phase = Phase::Closing;
@@ -138,7 +138,7 @@ impl Server {
             }
             (Phase::Closing, _) | (Phase::Serving, Initialize::METHOD) => {
                 let reason = format!("`{}` is not possible any more", shown(method));
-                Err(refused(ErrorCode::InvalidRequest, reason))
+                Err(refused(ErrorCode::InvalidRequest, &reason))
             }
             (Phase::Serving, _) => self.answer(method, params),
         }
@@ -162,7 +162,7 @@ impl Server {
             Completion::METHOD => |document, at, _| written(completion::completion(document, at)),
             _ => {
                 let reason = format!("no method `{}`", shown(method));
-                return Err(refused(ErrorCode::MethodNotFound, reason));
+                return Err(refused(ErrorCode::MethodNotFound, &reason));
             }
         };
         let at: TextDocumentPositionParams = read(params.clone())?;

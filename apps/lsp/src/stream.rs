@@ -60,9 +60,12 @@ impl<R: BufRead, W: Write> Reader<R, W> {
                 Err(_) if was_lost => continue,
                 Err(reason) => Err(refusal(ErrorCode::ParseError, &reason, &Value::Null)),
             };
-            match message.map(|message| tell.send(message)) {
-                Ok(Ok(())) => {}
-                Ok(Err(_)) => break,
+            match message {
+                Ok(message) => {
+                    if tell.send(message).is_err() {
+                        break;
+                    }
+                }
                 Err(refusal) => self.refuse(&refusal)?,
             }
         }

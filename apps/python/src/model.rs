@@ -146,6 +146,7 @@ impl Model {
         accelerations: Any<'_, 'py>,
         threads: Option<usize>,
     ) -> PyResult<Vec<Array<'py>>> {
+        use FunctionKind as F;
         let model = self.inner.equations();
         let info = model.info();
         let (n, m, k) = (info.state_len(), info.input_len(), info.parameter_len());
@@ -164,10 +165,9 @@ impl Model {
             },
             out,
         };
-        use FunctionKind as F;
         match function {
             "rates" => call.evaluate(Some(F::Rates), [&[n]], |at, _, [rates]| {
-                model.rates(at, rates)
+                model.rates(at, rates);
             }),
             "jacobians" => {
                 let shapes: [&[usize]; 3] = [&[n], &[n, n], &[n, m]];

@@ -198,7 +198,7 @@ impl Body<'_> {
                 [entry, ..] => self.written.value(*entry).text,
                 [] => "T::constant(0.0)".to_owned(),
             },
-            Layout::Vector(space) => self.vector(space, entries.iter().map(|one| self.value(one))),
+            Layout::Vector(space) => self.vector(space, entries.iter().map(|one| self.value(*one))),
             Layout::List(_) => self.list(entries),
             Layout::Rows(space, columns) => {
                 self.vector(space, entries.chunks(columns).map(|row| self.list(row)))
@@ -217,13 +217,13 @@ impl Body<'_> {
         }
     }
 
-    fn value(&self, value: &Value) -> String {
-        self.written.value(*value).text
+    fn value(&self, value: Value) -> String {
+        self.written.value(value).text
     }
 
     /// `[a, b]`
     fn list(&self, values: &[Value]) -> String {
-        array(values.iter().map(|value| self.value(value)))
+        array(values.iter().map(|&value| self.value(value)))
     }
 
     /// `Name { field: value, … }`
@@ -237,7 +237,7 @@ impl Body<'_> {
         let zero = Operation::Constant(Rational::ZERO);
         let is_zero = |entry: &&Value| *self.tape.operation(**entry) == zero;
         if entries.iter().filter(is_zero).count() <= 1 {
-            return self.vector(space, entries.iter().map(|one| self.value(one)));
+            return self.vector(space, entries.iter().map(|one| self.value(*one)));
         }
         let name = type_name(space);
         let zeros = format!("{name}::splat({})", self.written.constant(&Rational::ZERO));
@@ -246,7 +246,7 @@ impl Body<'_> {
         }
         let fields = self.types.fields(space).iter().zip(entries);
         let fields = fields.filter(|(_, entry)| !is_zero(entry));
-        let fields = fields.map(|(field, entry)| (field.as_str(), self.value(entry)));
+        let fields = fields.map(|(field, entry)| (field.as_str(), self.value(*entry)));
         structure(name, fields, Some(zeros))
     }
 }

@@ -295,9 +295,9 @@ pub(super) fn name_again(dag: &mut Dag, derived: &Dag) {
 pub(super) fn known_values(dag: &Dag, hints: &Dag) -> Vec<Option<(usize, bool)>> {
     let hinted = values(hints, &hints.order());
     let results = hints.results.iter().enumerate();
-    let known = Known::of(results.filter_map(|(number, item)| {
-        can_give_way(hints, item.id).then(|| (hinted[item.id.index()], number, item.flip))
-    }));
+    let results = results.filter(|(_, item)| can_give_way(hints, item.id));
+    let known =
+        Known::of(results.map(|(number, item)| (hinted[item.id.index()], number, item.flip)));
     let order = dag.order();
     let values = values(dag, &order);
     let mut found = vec![None; dag.len()];

@@ -45,13 +45,14 @@ impl Reader<'_> {
                 let array = self.of_length(array, value, &wanted, *count)?;
                 self.names(array, "a name", true)
             }
-            Form::Direction => match value.get_ref() {
-                DeValue::String(_) => self.word(key, AXES, value).map(ValueAst::Word),
-                _ => {
+            Form::Direction => {
+                if let DeValue::String(_) = value.get_ref() {
+                    self.word(key, AXES, value).map(ValueAst::Word)
+                } else {
                     let wanted = "an axis such as `\"z\"`, or three components";
                     self.components(value, wanted).map(ValueAst::Components)
                 }
-            },
+            }
             Form::Expression => Some(ValueAst::Expression(self.expression(value))),
             Form::Components => self
                 .components(value, "three components")

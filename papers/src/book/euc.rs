@@ -35,8 +35,11 @@ use crate::equations::items;
 use laboratory::{Laboratory, Session};
 use rider::Manoeuvre;
 
+/// What makes a section, from a laboratory of any lifetime.
+type Make = fn(&Laboratory) -> Result<Section>;
+
 /// Parts with their names for progress messages.
-const PARTS: &[(&str, fn(&Laboratory) -> Result<Section>)] = &[
+const PARTS: &[(&str, Make)] = &[
     ("equations", tables::equations),
     ("tables", tables::section),
     ("figures 3 and 4", figure_3::section),

@@ -16,10 +16,10 @@ mod manoeuvres;
 mod numbers;
 mod tables;
 
-use super::{Result, Section, made};
+use super::{Make, Result, Section, made};
 
 /// Parts with their names for progress messages; they are given the number of grid points along each axis.
-const PARTS: &[(&str, fn(usize) -> Result<Section>)] = &[
+const PARTS: &[(&str, Make<usize>)] = &[
     ("equations", equations::section),
     ("critical values", numbers::section),
     ("tables", tables::section),

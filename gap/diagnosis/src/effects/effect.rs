@@ -74,8 +74,11 @@ impl Family {
     }
 }
 
-/// How an effect outside the equations of motion acts at the site of an index, by the word of its filter.
-const FILTERS: [(&str, fn(usize) -> Acts); 7] = [
+/// How an effect outside the equations of motion acts at the site of an index.
+type ActsAt = fn(usize) -> Acts;
+
+/// The same by the word of its filter.
+const FILTERS: [(&str, ActsAt); 7] = [
     ("value", Acts::Parameter),
     ("lag", Acts::Lag),
     ("delay", Acts::Delay),
@@ -106,7 +109,7 @@ pub struct Effect {
     pub(super) counts: usize,
     pub(super) switch: Option<String>,
     /// How it acts at the site of an index.
-    pub(super) acts: fn(usize) -> Acts,
+    pub(super) acts: ActsAt,
     /// Whether its size has the tolerance that the line of an input or of a channel states.
     pub(super) has_tolerance: bool,
     /// The whole file.

@@ -29,11 +29,9 @@ use crate::limits::MAX_ITEMS;
 use crate::occurrences::Namespace;
 use crate::parse;
 
+pub(crate) use made::SECTION;
 use made::{Known, Made};
 use piece::Piece;
-
-/// The section of joints.
-pub(crate) const SECTION: &str = "joints";
 
 /// A spec without joints.
 #[derive(Debug, Clone)]

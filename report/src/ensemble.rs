@@ -5,27 +5,13 @@ mod parts;
 
 use std::fmt::Write as _;
 
-use appell_ensemble::rows::Column;
-use appell_ensemble::summary::Summary;
 use maud::{PreEscaped, html};
 
 use crate::page_shell::PageShell;
 use parts::{parts, sentences};
 
 pub use figures::{Named, figures};
-
-/// A study with its statistics.
-#[derive(Debug, Clone, Copy)]
-pub struct About<'a> {
-    /// Its title.
-    pub title: &'a str,
-    /// The study file.
-    pub study: &'a str,
-    /// The columns of the rows.
-    pub columns: &'a [Column],
-    /// Their statistics.
-    pub summary: &'a Summary,
-}
+pub use parts::About;
 
 /// The statistics as text.
 pub fn text(about: &About<'_>) -> String {

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use appell_spec::did_you_mean;
 
-use crate::Failure;
 use crate::dictionary::Entry;
+use crate::failure::Failure;
 use crate::names::Names;
 use crate::patterns::{self, Patterns};
 

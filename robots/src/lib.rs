@@ -21,12 +21,14 @@
 //! | `assembly.rs` | positions of joints that satisfy the constraints |
 //! | `names.rs`, `letters.rs`, `patterns.rs` | valid names; numbers written out or as parameters, also by patterns |
 //! | `dictionary.rs` | names of the file in the spec |
+//! | `failure.rs` | why a robot cannot be imported |
 //! | `options.rs`, `without.rs`, `lock.rs`, `snap.rs` | options; omitted properties; joints made rigid; nearly right angles |
 //! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
 
 mod assembly;
 mod dictionary;
 mod elimination;
+mod failure;
 mod format;
 mod includes;
 mod inertia;
@@ -55,6 +57,7 @@ use appell_spec::limits::MAX_ITEMS;
 use includes::Whole;
 
 pub use dictionary::{ActuatorName, BodyName, Dictionary, Entry, JointName};
+pub use failure::Failure;
 pub use format::Format;
 pub use includes::MAX_FILE;
 pub use letters::Letters;
@@ -98,22 +101,6 @@ pub struct LeftOut {
     pub lines: Vec<usize>,
     /// How the motion differs without them; `None` if it does not.
     pub effect: Option<&'static str>,
-}
-
-/// Why a robot cannot be imported.
-#[derive(Debug)]
-pub enum Failure {
-    /// Its file or an included one has errors or unsupported parts; the report is about one file.
-    File(Box<Report>),
-    /// A joint that cannot be locked, in a sentence.
-    Lock(String),
-    /// Names of parameters that match nothing.
-    Unknown {
-        /// The first one.
-        name: String,
-        /// A suggestion.
-        help: String,
-    },
 }
 
 /// Frees or fixes the roots, as the options ask.

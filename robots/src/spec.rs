@@ -12,9 +12,9 @@ mod units;
 
 use appell_spec::limits::{MAX_ITEMS, MAX_SENTENCE};
 
-use crate::Failure;
 use crate::assembly::Configuration;
 use crate::dictionary::{BodyName, Dictionary, JointName};
+use crate::failure::Failure;
 use crate::format::Format;
 use crate::letters::{Numbers, Parameter};
 use crate::loops::Equations;

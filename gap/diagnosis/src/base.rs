@@ -8,19 +8,18 @@
 //! blocks of the recordings are taken as independent of each other (K.-Y. Liang, S. L. Zeger, 1986).
 
 mod adjustment;
+mod equations;
 mod error;
 mod moments;
 mod regression;
 
-use appell_codegen::jit::{NativeFunction, Sizes};
 use appell_codegen::mechanics::{Linear, Regressor};
-use appell_codegen::schedule::schedule;
-use appell_codegen::tape::{Tape, interpret_weighted};
 use appell_estimate::BaseParameters;
-use appell_estimate::inverse::Moment;
 use appell_recordings::DataSet;
-use appell_runtime::model::{At, Model};
-use nalgebra::{DMatrix, DVector};
+use appell_runtime::model::Model;
+use nalgebra::DMatrix;
+
+use equations::Equations;
 
 pub use error::BaseError;
 pub(crate) use moments::recorded;
@@ -148,54 +147,4 @@ pub fn fit(
     let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
     let recorded = moments::recorded(set, model, &p)?;
     regression::fit(&Equations::new(regressor), structure, &recorded, model, &p)
-}
-
-/// Y, r and π at a motion.
-struct LinearEquations {
-    regressor: DMatrix<f64>,
-    rest: DVector<f64>,
-    values: Vec<f64>,
-}
-
-/// The regressor, compiled where that is possible.
-struct Equations {
-    tape: Tape,
-    native: Option<NativeFunction>,
-    speeds: usize,
-    count: usize,
-}
-
-impl Equations {
-    fn new(regressor: &Regressor) -> Self {
-        let program = &regressor.program;
-        let tape = schedule(program, &program.functions[0]);
-        Self {
-            native: NativeFunction::compile(&tape, Sizes::from(&program.info)).ok(),
-            tape,
-            speeds: program.info.speeds,
-            count: regressor.parameters.len(),
-        }
-    }
-
-    /// At a motion with other inputs.
-    fn at(&self, moment: &Moment, u: &[f64], p: &[f64]) -> LinearEquations {
-        let (t, x, accelerations) = (moment.t, &moment.x, &moment.accelerations);
-        let at = At { t, x, u, p };
-        let (s, k) = (self.speeds, self.count);
-        let (mut regressor, mut rest, mut values) = (vec![0.0; s * k], vec![0.0; s], vec![0.0; k]);
-        let results = [&mut regressor[..], &mut rest, &mut values];
-        if let Some(native) = &self.native {
-            native.call_weighted(at, accelerations, results);
-        } else {
-            let computed = interpret_weighted(&self.tape, at, accelerations);
-            for (to, from) in results.into_iter().zip(&computed) {
-                to.copy_from_slice(from);
-            }
-        }
-        LinearEquations {
-            regressor: DMatrix::from_row_slice(s, k, &regressor),
-            rest: DVector::from_vec(rest),
-            values,
-        }
-    }
 }

@@ -7,12 +7,14 @@
 //! | `effect.rs` | the file of an effect |
 //! | `site_kind.rs`, `site.rs` | kinds of sites with their placeholders; the sites in a mechanism |
 //! | `load.rs` | loads that depend on the motion like a feedback controller |
+//! | `acts.rs` | how it acts |
 //! | `candidate.rs` | an effect at a site: names, items to add, parameters to estimate |
 //! | `law.rs` | measured laws outside the library, some with a state of their own |
 //! | `drive.rs` | forces of inputs along a pseudo-velocity, and the inertia there |
 //! | `place.rs` | errors in the file of an effect, at their positions |
 //! | `model.rs` | a mechanism with many candidates, derived at once; equal to the mechanism at nominal values |
 
+mod acts;
 mod candidate;
 mod drive;
 mod effect;
@@ -25,8 +27,9 @@ mod site;
 mod site_kind;
 mod term;
 
+pub use acts::Acts;
+pub use candidate::Candidate;
 pub(crate) use candidate::Part;
-pub use candidate::{Acts, Candidate};
 pub(crate) use drive::Drive;
 pub use effect::{Effect, EffectError, Family};
 pub(crate) use law::Memory;

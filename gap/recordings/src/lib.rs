@@ -27,7 +27,7 @@
 //! | `channel.rs`, `level.rs` | quantity of a column; its noise level |
 //! | `between.rs` | inputs between rows |
 //! | `draft.rs` | a description from recordings without one |
-//! | `set.rs` | a data set |
+//! | `set.rs`, `judged.rs` | a data set; what it lacks, once it is read |
 //! | `run.rs`, `jumps.rs` | a run from its table: inputs held, angles unwrapped; jumps |
 //! | `quantum.rs`, `noise.rs` | resolution of a sensor; noise level, stated and estimated |
 //! | `observed.rs` | the runs as recordings for estimation |
@@ -55,6 +55,7 @@ pub mod fields;
 mod finding;
 mod format;
 mod frame;
+mod judged;
 mod jumps;
 mod level;
 pub mod limits;

@@ -10,6 +10,7 @@ use crate::limits::MAX_NUMBERS;
 use crate::set::{Part, Run};
 use crate::table::Table;
 use crate::time::Stated;
+use crate::topics::hold;
 use crate::{DataError, jumps};
 
 /// Largest number of successive rows without an input; over a longer dropout the input is unknown.
@@ -130,15 +131,4 @@ fn without_lost_inputs(mut table: Table, channels: &[Channel]) -> Table {
         }
     }
     table
-}
-
-/// Replaces missing values by the previous one, those at the beginning by `first`.
-pub(crate) fn hold(values: &mut [f64], first: f64) {
-    let mut last = first;
-    for value in values {
-        if value.is_nan() {
-            *value = last;
-        }
-        last = *value;
-    }
 }

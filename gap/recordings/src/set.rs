@@ -4,11 +4,10 @@ use std::borrow::Cow;
 
 use appell_spec::{Mechanism, mechanism};
 
-use crate::channel::{Channel, Role};
+use crate::channel::Channel;
 use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind};
 use crate::robot::Robot;
-use crate::{noise, stretches};
 
 /// The text of a spec and its name in messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -165,37 +164,5 @@ impl DataSet {
         let finding = Finding::new(kind, message);
         self.findings.push(finding.of_channel(column));
         self.findings.sort_by_key(Finding::order);
-    }
-
-    /// The set with its runs cut at gaps, the noise of its channels, and doubts about it.
-    pub(crate) fn judged(mut self) -> Self {
-        let runs = std::mem::take(&mut self.runs);
-        self.runs = stretches::uninterrupted(runs, &self.channels, &mut self.findings);
-        noise::find(&mut self);
-        self.tell_what_lacks();
-        self.tell_smooth_inputs();
-        self.findings.sort_by_key(Finding::order);
-        self
-    }
-
-    /// Inputs without a column, and parameters without a tolerance.
-    fn tell_what_lacks(&mut self) {
-        for (index, input) in self.mechanism.inputs.iter().enumerate() {
-            let recorded = |channel: &Channel| channel.role == Role::Input(index);
-            if !self.channels.iter().any(recorded) {
-                let message = format!(
-                    "no column is the input `{}`, so zero is taken for it",
-                    input.label.name
-                );
-                self.findings
-                    .push(Finding::new(FindingKind::NoInput, message));
-            }
-        }
-        if !self.parameters.is_empty() && self.parameters.iter().all(|own| own.std.is_none()) {
-            let message = "no parameter has a tolerance `std`, so all are taken as exact: an effect has to make up for \
-                           whatever differs";
-            self.findings
-                .push(Finding::new(FindingKind::NoTolerance, message));
-        }
     }
 }

@@ -2,7 +2,6 @@
 //! measurements.
 
 use crate::channel::{Channel, Role};
-use crate::run::hold;
 use crate::{Finding, FindingKind};
 
 /// Part of the rows that may lack a value by a fault; with more, the messages come at other times.
@@ -50,4 +49,15 @@ pub(crate) fn joined(
     let message = "messages of commands and of measurements have their own times: a command holds until the next one, and \
                    rows are those of the measurements";
     Some(Finding::new(FindingKind::Asynchronous, message))
+}
+
+/// Replaces missing values by the previous one, those at the beginning by `first`.
+pub(crate) fn hold(values: &mut [f64], first: f64) {
+    let mut last = first;
+    for value in values {
+        if value.is_nan() {
+            *value = last;
+        }
+        last = *value;
+    }
 }

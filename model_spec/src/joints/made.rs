@@ -8,11 +8,13 @@ use crate::expr::Span;
 use crate::language::JointWord;
 use crate::limits::MAX_SENTENCE;
 
-use super::SECTION;
 use super::direction::{AXES, Direction, Turn, word};
 use super::piece::Piece;
 use super::quantities::{self, JointQuantity};
 use super::written::Written;
+
+/// The section of joints.
+pub(crate) const SECTION: &str = "joints";
 
 /// An item of another section.
 #[derive(Debug, Clone)]

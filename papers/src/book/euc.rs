@@ -11,6 +11,7 @@
 //! | `laboratory.rs` | all rides, captured and smoothed |
 //! | `torque.rs` | M_d,1 and M_d,2, and their difference over the height |
 //! | `figure_3.rs`, `figure_6.rs`, `figure_8.rs` | figures 3 and 4, 6 and 7, 8 |
+//! | `simulated.rs` | findings of the paper, tested on the rides |
 //! | `heights.rs` | the height with its interval |
 
 mod capture;
@@ -22,18 +23,17 @@ mod laboratory;
 mod recorded;
 mod rider;
 pub mod sample;
+mod simulated;
 mod tables;
 mod torque;
 
 use std::path::Path;
 
-use serde::Deserialize;
-
-use super::claim::Claim;
-use super::{Part, Result, Section, computation, failed, made};
-use crate::equations::items;
+use super::{Result, Section, failed, made};
 use laboratory::{Laboratory, Session};
 use rider::Manoeuvre;
+
+pub use simulated::{Finding, findings};
 
 /// What makes a section, from a laboratory of any lifetime.
 type Make = fn(&Laboratory) -> Result<Section>;
@@ -63,35 +63,4 @@ impl Laboratory {
         let found = sessions.find(|session| session.manoeuvre == manoeuvre);
         found.ok_or_else(|| failed("the manoeuvre was not ridden"))
     }
-}
-
-/// A finding that shows on the simulated rides or does not.
-#[derive(Debug, Deserialize)]
-pub struct Finding {
-    /// Its place in the paper.
-    pub place: String,
-    /// The statement.
-    pub published: String,
-    /// Whether it shows.
-    pub shows: bool,
-}
-
-/// The findings with a known result.
-pub fn findings() -> Result<Vec<Finding>> {
-    items(include_str!("euc/simulated.toml")).map_err(computation)
-}
-
-/// A statement about unpublished recordings, tested on simulated ones. It is expected to show or not
-/// as the findings say; otherwise either may be.
-fn simulated(part: &mut Part, key: &str, ours: &str, shows: bool) -> Result<()> {
-    let claim = part.statement(key)?.found(ours, shows);
-    let known = findings()?.into_iter();
-    let mut known = known
-        .filter(|finding| finding.place == claim.place && finding.published == claim.published);
-    part.claims.push(Claim {
-        as_expected: known.all(|finding| finding.shows == shows),
-        note: "on simulated rides".to_owned(),
-        ..claim
-    });
-    Ok(())
 }

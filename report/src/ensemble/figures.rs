@@ -3,7 +3,7 @@
 use appell_ensemble::rows::{Column, Role};
 use appell_ensemble::summary::{Course, Effects, Event, Number};
 
-use super::About;
+use super::parts::About;
 use super::parts::{in_brackets, labelled};
 use crate::figure::{Histogram, Layer, Lever, Look, Mark, Plot, Scatter, Tornado};
 use crate::text::short;

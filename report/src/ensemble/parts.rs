@@ -3,10 +3,22 @@
 use appell_ensemble::design::Sampling;
 use appell_ensemble::rows::{Column, Role};
 use appell_ensemble::statistics::moments::Moments;
-use appell_ensemble::summary::Number;
+use appell_ensemble::summary::{Number, Summary};
 
-use super::About;
 use crate::text::{Table, short};
+
+/// A study with its statistics.
+#[derive(Debug, Clone, Copy)]
+pub struct About<'a> {
+    /// Its title.
+    pub title: &'a str,
+    /// The study file.
+    pub study: &'a str,
+    /// The columns of the rows.
+    pub columns: &'a [Column],
+    /// Their statistics.
+    pub summary: &'a Summary,
+}
 
 /// Name and unit of a column.
 pub(super) fn labelled(column: &Column) -> String {

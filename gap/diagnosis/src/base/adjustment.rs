@@ -19,7 +19,7 @@ use appell_estimate::{HALF_WIDTH_95, in_parallel};
 use appell_recordings::Part;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::LinearEquations;
+use super::equations::LinearEquations;
 use super::error::BaseError;
 use super::moments::{Recorded, Stretch};
 

@@ -11,7 +11,8 @@ use super::adjustment::adjust;
 use super::error::BaseError;
 use super::moments::{Recorded, Stretch, moment};
 
-use super::{Equations, LinearEquations, Structure};
+use super::Structure;
+use super::equations::{Equations, LinearEquations};
 
 /// The estimate of a base parameter.
 #[derive(Debug, Clone, PartialEq)]

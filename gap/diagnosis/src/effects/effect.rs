@@ -33,7 +33,7 @@ use appell_spec::outline::Outline;
 use appell_spec::{Code, Report, closest, did_you_mean, shown};
 use toml::de::DeTable;
 
-use super::candidate::Acts;
+use super::acts::Acts;
 use super::site_kind::{KINDS, SiteKind};
 use appell_recordings::fields::{Fields, Value};
 

@@ -3,7 +3,8 @@
 use appell_spec::Mechanism;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
-use super::candidate::{Acts, Candidate, Part, filled, identifier, unused};
+use super::acts::Acts;
+use super::candidate::{Candidate, Part, filled, identifier, unused};
 use super::effect::Family;
 use super::site::{LENGTH, Scales, Sites, number};
 

@@ -3,8 +3,8 @@
 use crate::clock::{median, steps};
 use crate::episode::{is_episode, number};
 use crate::limits::{MAX_RUNS, MIN_ROWS};
-use crate::run::hold;
 use crate::time::{self, TIME, may_be_time, unit_of};
+use crate::topics::hold;
 use crate::{DataError, Logged, format};
 
 /// Runs that the quantities and units are found from; the others only have to have the same columns.

@@ -5,7 +5,7 @@ use appell_report::figure::{Figure, Panel};
 
 use super::laboratory::{Laboratory, Session};
 use super::rider::Manoeuvre;
-use super::simulated;
+use super::simulated::simulated;
 use super::torque::{Curve, Planar};
 use crate::book::{Part, Result, Section, failed, line};
 

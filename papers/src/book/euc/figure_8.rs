@@ -2,7 +2,7 @@
 
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
-use super::simulated;
+use super::simulated::simulated;
 use super::torque::{Curve, Planar};
 use crate::book::{Part, Result, Section, line};
 use appell_report::figure::{Figure, Panel};

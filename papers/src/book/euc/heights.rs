@@ -12,7 +12,7 @@ use nalgebra::DMatrix;
 
 use super::laboratory::{Laboratory, PERFECT, REAL, Session};
 use super::rider::Manoeuvre;
-use super::simulated;
+use super::simulated::simulated;
 use crate::book::{Part, Result, Section, computation, failed, line, parameter, shipped};
 
 /// Heights of the profiles, relative to the estimate.

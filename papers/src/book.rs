@@ -25,10 +25,10 @@ pub use page::page;
 /// A result, or the reason why a computation failed.
 pub(crate) type Result<T> = std::result::Result<T, Error>;
 
-/// What makes a section, from what the parts of a book share.
+/// A function that makes a section from the data common to the parts of a book.
 type Make<C> = fn(C) -> Result<Section>;
 
-/// Parts of a book, made from what they share after some steps that are done; `making` is called with the current part
+/// The parts of a book, made from their common data after some steps that are done; `making` is called with the current part
 /// and the progress.
 fn made<C: Copy>(
     parts: &[(&str, Make<C>)],

@@ -35,7 +35,7 @@ use rider::Manoeuvre;
 
 pub use simulated::{Finding, findings};
 
-/// What makes a section, from a laboratory of any lifetime.
+/// A function that makes a section from a laboratory.
 type Make = fn(&Laboratory) -> Result<Section>;
 
 /// Parts with their names for progress messages.

@@ -19,7 +19,7 @@ const CALIBRATED: Imperfection = Imperfection {
     offsets: 0.0,
 };
 
-/// What was written.
+/// The written files, and the true value that they hide.
 pub struct Written {
     /// Names of the files, the skeleton first.
     pub files: Vec<String>,

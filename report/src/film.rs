@@ -92,7 +92,7 @@ fn around(title: &str, style: &str, data: &str) -> String {
 /// Largest number of rows; larger pages open slowly.
 const MOST_ROWS: usize = 12_000;
 
-/// The data of a motion for a [`live_page`](live_page): the animation with the values of the columns.
+/// The data of a motion for a [`live_page`]: the animation with the values of the columns.
 pub fn data(
     maker: &FilmMaker,
     model: &dyn Model,
